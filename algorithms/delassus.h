@@ -1,0 +1,106 @@
+// The public header: what an operator is, and the table of all of them.
+//
+//   A = J M⁻¹ Jᵀ + R⁻¹            m × m, symmetric positive semidefinite
+//   apply   a = A f               constraint forces to constraint accelerations
+//   solve   f = A⁻¹ a = Λ_R a     the damped inverse
+//
+// Phases: analyze (structure; once) → update (numbers at q) → update_damping (numbers at a new R⁻¹, kinematics kept)
+//         → apply / solve (vectors, or k columns at once).
+// After analyze nothing allocates. Instances share nothing: use one per thread; apply and solve are const and may run
+// concurrently with a Workspace each.
+#pragma once
+
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "algorithms/problem.h"
+#include "algorithms/scalars.h"
+
+namespace delassus {
+
+/// Columns of m numbers with unit inner stride.
+template <class T> using ConstRef = const Eigen::Ref<const MatrixX<T>, 0, Eigen::OuterStride<>>&;
+template <class T> using Ref = Eigen::Ref<MatrixX<T>, 0, Eigen::OuterStride<>>;
+
+/// Scratch memory of apply and solve; its contents never matter. Allocated by its constructor only.
+template <class T> class Workspace {
+ public:
+  explicit Workspace(Index scalars);
+  [[nodiscard]] T* data() { return begin_; }
+  [[nodiscard]] Index size() const { return size_; }
+  void fill(const T& value) { std::fill(begin_, begin_ + size_, value); }
+
+ private:
+  std::vector<T> storage_;
+  T* begin_ = nullptr;  // 64-byte aligned
+  Index size_ = 0;
+};
+
+template <class T> class Operator {
+ public:
+  virtual ~Operator() = default;
+
+  /// Symbolic phase: elimination order, fill, layout. Allocates everything. @throws ModelError for a bad structure.
+  void analyze(std::shared_ptr<const Structure> structure);
+  /// Numeric phase at a configuration. @throws std::logic_error before analyze or with another structure.
+  Report update(const Problem<T>& problem, const Damping<T>& damping);
+  /// Numeric phase at a new damping; everything that does not depend on it is kept.
+  Report update_damping(const Damping<T>& damping);
+
+  /// a = A f. Shapes m×k; f and a must not overlap. NaN in ⇒ NaN out.
+  [[nodiscard]] Report apply(ConstRef<T> f, Ref<T> a, Workspace<T>& workspace) const;
+  /// f = A⁻¹ a. Shapes m×k. When the report is not ok, f holds NaN (or the best iterate for not_converged).
+  [[nodiscard]] Report solve(ConstRef<T> a, Ref<T> f, Workspace<T>& workspace) const;
+
+  [[nodiscard]] Index size() const { return structure_ ? structure_->rows : 0; }   ///< rows m
+  /// Scalars a Workspace needs for `columns` columns.
+  [[nodiscard]] Index workspace(Index columns = 1) const;
+  /// Bytes held by the operator after analyze, workspace not counted.
+  [[nodiscard]] Index bytes() const;
+  [[nodiscard]] const std::shared_ptr<const Structure>& structure() const { return structure_; }
+
+ protected:
+  // What an author writes. Shapes, phase and aliasing are already checked.
+  virtual void do_analyze() = 0;
+  virtual Report do_update(const Problem<T>& problem, const Damping<T>& damping) = 0;
+  virtual Report do_update_damping(const Damping<T>& damping) = 0;
+  virtual Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const;
+  virtual Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const;
+  [[nodiscard]] virtual Index do_workspace(Index columns) const = 0;
+  [[nodiscard]] virtual Index do_bytes() const = 0;
+
+ private:
+  void check(Index rows, Index columns, Index out_rows, Index out_columns, const T* in, const T* out,
+             const Workspace<T>& w) const;
+  std::shared_ptr<const Structure> structure_;
+  bool updated_ = false;
+};
+
+/// How the rounding error of a function grows; the laws pick their bound from it (docs/verification.md).
+enum class ErrorClass : std::uint8_t {
+  componentwise,  ///< forward error within the data's own componentwise sensitivity
+  normwise,       ///< forward error within κ(A) · eps
+  amplified,      ///< forward error R·λmax(Λ⁻¹) larger: the direct inversion-lemma formula
+};
+[[nodiscard]] std::string_view name(ErrorClass e);
+
+template <class T> using Maker = std::unique_ptr<Operator<T>> (*)();
+
+/// One row of the table of operators.
+struct OperatorRow {
+  std::string_view name, summary, formula, source, cost;
+  bool applies, solves;
+  bool zero_damping;          ///< solve is defined when rows of R⁻¹ are zero (and A is regular)
+  bool terminates_exactly;    ///< exact in exact arithmetic
+  ErrorClass apply_error, solve_error;
+  std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>> makers;
+
+  template <class T> [[nodiscard]] std::unique_ptr<Operator<T>> make() const { return std::get<Maker<T>>(makers)(); }
+};
+
+[[nodiscard]] const std::vector<OperatorRow>& operators();
+/// @throws ModelError listing the accepted names.
+[[nodiscard]] const OperatorRow& find_operator(std::string_view name);
+
+}  // namespace delassus

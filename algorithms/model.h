@@ -1,0 +1,113 @@
+// A described mechanism: robots, boxes and constraints before a configuration is chosen. A plain value, in double.
+// kinematics.h turns it into a Problem at a configuration q. Units SI, radians.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "algorithms/problem.h"
+
+namespace delassus {
+
+/// Joint types. q and ν of each, in order (angular before linear in ν, quaternions w x y z):
+///   revolute, prismatic   q 1, ν 1    about / along `axis`
+///   universal             q 2, ν 2    about `axis` of the parent side, then about `axis2` carried along
+///   planar                q 3, ν 3    ν = (rotation about `axis`, translations along two in-plane axes); q the same order
+///   spherical             q 4, ν 3    quaternion; ν = ω in body axes
+///   floating              q 7, ν 6    position (3), quaternion (4); ν = (ω, v of the frame's origin), body axes
+///   cylindrical           q 2, ν 2    about, then along `axis`
+enum class JointType : std::uint8_t { revolute, prismatic, universal, planar, spherical, floating, cylindrical };
+
+struct Joint {
+  std::string name;
+  JointType type = JointType::revolute;
+  Vector3<double> axis{0, 0, 1};   ///< unit, in the joint frame
+  Vector3<double> axis2{0, 1, 0};  ///< unit, universal only
+  Pose<double> placement;          ///< X of the joint frame in the parent body's frame (in the world for roots)
+  /// Per degree of freedom (size n_i, or empty = zeros / unlimited).
+  std::vector<double> armature, damping, friction, lower, upper, effort, velocity;
+};
+
+/// Collision primitive, in the body frame. size: sphere {r}; cylinder and capsule {r, half length along z}; box half extents.
+struct Shape {
+  enum class Kind : std::uint8_t { sphere, cylinder, capsule, box } kind = Kind::sphere;
+  Vector3<double> size{0, 0, 0};
+  Pose<double> placement;
+  double friction = -1;  ///< Coulomb coefficient; negative: not given
+};
+
+struct Body {
+  std::string name;        ///< full name, `robot/link`
+  Index parent = ground;
+  Joint joint;             ///< moves this body in its parent
+  double mass = 0;                                         ///< [kg]
+  Vector3<double> com{0, 0, 0};                            ///< in the body frame [m]
+  Matrix3<double> inertia = Matrix3<double>::Zero();       ///< about com, body axes [kg m²]
+  std::vector<Shape> shapes;
+};
+
+/// One end of a constraint: a frame fixed on a body, or in the world (body == ground).
+struct Frame {
+  Index body = ground;
+  Pose<double> placement;  ///< X of the constraint frame in the body's frame (in the world for ground)
+};
+
+/// A constraint of the scene. Rows are in the axes of frame `a` (x y z of its placement), angular rows first:
+///   point 3         linear xyz                        weld 6          angular xyz, linear xyz
+///   hinge 5         angular xy, linear xyz (z free)   universal 4     angular about a.z × b.x, linear xyz
+///   cylindrical 4   angular xy, linear xy             prismatic 5     angular xyz, linear xy (z free)
+///   planar 3        angular xy, linear z (normal)     distance 1      along the line between the two origins
+///   contact 3       linear along normal z, tangents x, y of frame a
+///   joint_friction, joint_lock   one row per degree of freedom of the joint of body a.body
+///   coupling 1      Σ_k coefficient_k ν_k over single degrees of freedom (gear, mimic)
+///   general m       Σ_k K_k a_k, user blocks in body axes about each body's frame origin
+struct Constraint {
+  enum class Kind : std::uint8_t {
+    point, weld, hinge, universal, cylindrical, prismatic, planar, distance, contact,
+    joint_friction, joint_lock, coupling, general
+  };
+  struct Term {              ///< of coupling: degree of freedom `dof` of body's joint; of general: `K` (m×6) on body
+    Index body = ground;
+    Index dof = 0;
+    double coefficient = 1;
+    MatrixX<double> K;
+  };
+  std::string name;
+  Kind kind = Kind::point;
+  Frame a, b;
+  double length = 0;             ///< distance [m]
+  double friction = -1;          ///< contact: Coulomb coefficient; joint_friction: largest effort [N m or N]
+  bool loop = false;             ///< a position-level closure that assembly must bring to zero
+  std::vector<Term> terms;
+};
+
+struct Model {
+  std::vector<Body> bodies;            ///< parents before children
+  std::vector<Constraint> constraints;
+  std::vector<Index> first_q{0}, first_dof{0};  ///< N+1 each
+
+  [[nodiscard]] Index q_size() const { return first_q.back(); }
+  [[nodiscard]] Index dofs() const { return first_dof.back(); }
+  /// Index of the body with this full name. @throws ModelError naming the candidates.
+  [[nodiscard]] Index find(const std::string& name) const;
+  /// Appends a body and returns its index. @throws ModelError on an invalid inertia, axis or parent.
+  Index add(Body body);
+};
+
+[[nodiscard]] Index q_size(JointType t);
+[[nodiscard]] Index dof_count(JointType t);
+[[nodiscard]] std::string_view name(JointType t);
+[[nodiscard]] std::string_view name(Constraint::Kind k);
+/// Number of rows of a constraint in this model.
+[[nodiscard]] Index row_count(const Model& model, const Constraint& c);
+
+/// Checks positive mass, positive definite inertia and the triangle inequality of a body, unit axes, finite numbers.
+/// A massless body (mass and inertia zero) passes here; `validate` decides whether M stays regular.
+void validate_body(const Body& body, const std::string& file);
+/// Checks the whole model; massless bodies only where armature or massive descendants keep M regular.
+void validate(const Model& model, const std::string& file);
+
+/// The neutral configuration: zeros, unit quaternions.
+[[nodiscard]] VectorX<double> neutral(const Model& model);
+
+}  // namespace delassus

@@ -1,0 +1,61 @@
+// Error channels of the library.
+//   misuse      wrong size, phase or aliasing           std::logic_error, thrown at the public layer
+//   bad input   a file or a model that cannot be right  ModelError, naming file, element, value, unit, accepted
+//   numbers     what a computation came to              Report, a value: never an exception, a print or a repair
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace delassus {
+
+/// Numerical outcome of a factorisation or a solve.
+enum class Status : std::uint8_t {
+  ok,
+  lost_pivot,        ///< a pivot was not positive: M (or M_R) is singular or indefinite in this arithmetic
+  zero_damping,      ///< this form needs R⁻¹ > 0 and a row (or block) has a zero or singular one
+  not_converged,     ///< an iteration ended above its target; the result is the best iterate
+  not_finite,        ///< NaN or infinity in the data or in the right-hand side
+  not_supported,     ///< the operator has no such function (see its row in the table)
+};
+
+[[nodiscard]] constexpr std::string_view name(Status s) {
+  switch (s) {
+    case Status::ok: return "ok";
+    case Status::lost_pivot: return "lost_pivot";
+    case Status::zero_damping: return "zero_damping";
+    case Status::not_converged: return "not_converged";
+    case Status::not_finite: return "not_finite";
+    case Status::not_supported: return "not_supported";
+  }
+  return "unknown";
+}
+
+/// What a numeric phase or a solve came to.
+struct Report {
+  Status status = Status::ok;
+  std::int64_t where = -1;       ///< the row (zero_damping) or degree of freedom (lost_pivot) concerned, −1: none
+  int iterations = 0;            ///< refinement or Krylov steps taken
+  double backward_error = -1;    ///< normwise relative residual; −1: not computed
+  double error_bound = -1;       ///< rigorous bound on the energy-norm error; −1: not computed
+  double rcond_estimate = -1;    ///< estimate of 1/κ; −1: not computed
+
+  [[nodiscard]] bool ok() const { return status == Status::ok; }
+};
+
+/// Input that cannot be right. The message reads `file: element: what is wrong (accepted: …)`.
+class ModelError : public std::runtime_error {
+ public:
+  explicit ModelError(const std::string& message) : std::runtime_error(message) {}
+  ModelError(const std::string& file, const std::string& element, const std::string& problem,
+             const std::string& accepted);
+};
+
+/// Throws std::logic_error when a precondition of the public layer does not hold.
+inline void require(bool condition, const char* message) {
+  if (!condition) throw std::logic_error(message);
+}
+
+}  // namespace delassus
