@@ -6,7 +6,6 @@
 #pragma once
 
 #include <gmpxx.h>
-#include <quadmath.h>
 
 #include <cmath>
 #include <cstdint>
@@ -14,6 +13,14 @@
 #include <string>
 
 #include <Eigen/Core>
+
+// libquadmath's functions, declared here because its header is found by g++ only.
+extern "C" {
+__float128 sqrtq(__float128) noexcept;
+__float128 sinq(__float128) noexcept;
+__float128 cosq(__float128) noexcept;
+int finiteq(__float128) noexcept;
+}
 
 namespace delassus {
 
@@ -41,8 +48,7 @@ struct Quad {
   friend bool operator<=(const Quad& a, const Quad& b) { return a.v <= b.v; }
   friend bool operator>=(const Quad& a, const Quad& b) { return a.v >= b.v; }
 };
-inline Quad abs(const Quad& x) { return Quad(fabsq(x.v)); }
-inline Quad fabs(const Quad& x) { return Quad(fabsq(x.v)); }
+inline Quad abs(const Quad& x) { return x.v < 0 ? -x : x; }
 inline Quad sqrt(const Quad& x) { return Quad(sqrtq(x.v)); }
 inline Quad sin(const Quad& x) { return Quad(sinq(x.v)); }
 inline Quad cos(const Quad& x) { return Quad(cosq(x.v)); }
