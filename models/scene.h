@@ -1,0 +1,48 @@
+// Scenes: what exists (robots, boxes, ground, constraints, contacts, damping), read from a YAML file.
+//
+// The format is documented key by key in docs/scenes.md. Units SI, angles in radians, roll-pitch-yaw about fixed axes
+// (R = Rz Ry Rx). Relative URDF paths are relative to the scene file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "algorithms/kinematics.h"
+
+namespace delassus {
+
+/// A scene at its configuration: everything `kinematics(model, q)` and `Operator::update` ask for.
+struct Scene {
+  std::string file, name;             ///< file as opened ("" for generated scenes); name: stem, or "swimmer:N"
+  Model model;                        ///< bodies `robot/link`, boxes `name`; constraints in the order of the rows
+  VectorX<double> q;                  ///< configuration, after assembly when there are loops; size model.q_size()
+  bool has_gravity = false;
+  Vector3<double> gravity{0, 0, 0};   ///< [m/s²], world axes
+  Damping<double> damping;            ///< R⁻¹ over all rows of the model; zero when the scene gives none
+  Assembly assembly;                  ///< how the loops were closed; q equals `q` above
+  bool has_loops = false;             ///< some constraint is marked `loop`
+  bool provisional_pose = false;      ///< the pose was made by hand, not recorded: `pose: provisional`
+  bool has_ground = false;
+  double ground_height = 0;           ///< z of the ground plane [m]
+  double ground_friction = -1;        ///< Coulomb coefficient; negative: not given
+  std::string note;                   ///< the scene's own `note`
+  std::vector<std::string> notes;     ///< what the loaders left out or changed, one sentence each
+  std::map<std::string, Frame> frames;  ///< every link `robot/link` and box, links merged by fixed joints included
+};
+
+/// Reads a scene file. @throws ModelError naming file:line, key and what is accepted. Cost O(N + m) without loops.
+[[nodiscard]] Scene load_scene(const std::string& path);
+
+/// Opens a path to a .yaml file, the stem of a file in models/scenes, or "swimmer:N" (N ≥ 1 links).
+/// Stems are looked up in ./models/scenes, then in the source tree, then where the models were installed.
+/// @throws ModelError listing the known names.
+[[nodiscard]] Scene open_scene(const std::string& name);
+
+/// The stems of the scene files that come with the library, in the order of models/scenes/index.yaml.
+[[nodiscard]] std::vector<std::string> scene_names();
+
+/// The numbers of a scene at its configuration.
+[[nodiscard]] inline Problem<double> problem_of(const Scene& scene) { return kinematics(scene.model, scene.q); }
+
+}  // namespace delassus
