@@ -1,0 +1,66 @@
+// The named bounds of the verdict error / (eps · bound) < 30: what an error of one unit roundoff may come to.
+//
+// Every bound is a vector of m non-negative numbers, one per row, in the unit of the row it bounds. Absolute values
+// are taken entry by entry. With the sums over paths
+//   J_abs = Σ |K_e^i||S_k| (and |𝒦_i|),   M_abs = Σ_i |S_k|ᵀ|H_i||S_l| + armature
+// a relative change of at most ε in every number of S, K, 𝒦, H, armature, R⁻¹ (a number may change differently on
+// every path it is used on) changes J by |δJ| ≤ 2ε J_abs, and M by |δM| ≤ 3ε M_abs, to first order. The factors 2 and 3
+// are left to the 30.
+//
+// apply    y = J M⁻¹ Jᵀ x + R⁻¹ x gives   δy = δJ M⁻¹Jᵀx + J M⁻¹ δJᵀ x − J M⁻¹ δM M⁻¹ Jᵀ x + δR⁻¹ x, hence
+//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_abs|M⁻¹|J_absᵀ|x| + |R⁻¹||x|.
+// solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
+//            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
+// normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
+//            solve_normwise(a, λ) = ‖A⁻¹‖ ( ‖A‖ ‖λ‖ + ‖apply_sensitivity(λ)‖ + ‖a‖ ),  ∞-norms, the same on every row.
+// direct   the inversion-lemma formula λ = R a − R J ν with ν = M_R⁻¹ Jᵀ R a, M_R = M + Jᵀ R J, evaluated as it stands.
+//          Errors: of R a and of the difference, |R||a|; of J ν, J_abs|ν|; of ν, from M_R δν = δ(JᵀRa) − δM_R ν:
+//            solve_amplified(a) = |R| ( |a| + J_abs|ν|
+//                                      + J_abs|M_R⁻¹| ( (M_abs + J_absᵀ|R|J_abs)|ν| + J_absᵀ|R||a| ) ).
+//          Against λ it grows as R·λmax(J M⁻¹ Jᵀ).
+//
+// M⁻¹, M_R⁻¹, A⁻¹, R, ν come from Quad and are rounded once to double; the sums that follow have non-negative terms
+// only, so they are low by a relative (n + m) 2⁻⁵³ at most. A bound is zero only where no data enters the row.
+#pragma once
+
+#include <memory>
+
+#include "reference/definition.h"
+
+namespace delassus::reference {
+
+class Sensitivity {
+ public:
+  /// Forms M, J, A and |M⁻¹| in Quad: cost of `dense` and n³. @throws std::runtime_error when M is singular.
+  Sensitivity(const Problem<double>& problem, const Damping<double>& damping);
+  ~Sensitivity();
+  Sensitivity(Sensitivity&&) noexcept;
+  Sensitivity& operator=(Sensitivity&&) noexcept;
+
+  [[nodiscard]] Index rows() const;
+  /// Bound on the error of A x. Shapes m. Cost n² + n m.
+  [[nodiscard]] VectorX<double> apply_sensitivity(const VectorX<double>& x) const;
+
+  // The bounds of solve: the first call costs m³ in Quad (not safe to make from two threads at once).
+  /// A has no lost pivot in Quad; the three functions that need A⁻¹ throw std::runtime_error when it is not regular.
+  [[nodiscard]] bool regular() const;
+  /// λ = A⁻¹ a in Quad. Shapes m.
+  [[nodiscard]] VectorX<Quad> solve(const VectorX<double>& a) const;
+  /// Bound on the error of λ = A⁻¹ a from the data alone. Shapes m.
+  [[nodiscard]] VectorX<double> solve_sensitivity(const VectorX<double>& a, const VectorX<double>& lambda) const;
+  /// Bound on the error of λ in the sense of norms. Shapes m, all entries equal.
+  [[nodiscard]] VectorX<double> solve_normwise(const VectorX<double>& a, const VectorX<double>& lambda) const;
+  /// Bound on the error of the direct inversion-lemma formula. Needs R⁻¹ > 0, not A⁻¹. @throws std::runtime_error when
+  /// a row or a block of R⁻¹ is singular. The first call costs n² m + n³ in Quad.
+  [[nodiscard]] VectorX<double> solve_amplified(const VectorX<double>& a) const;
+  /// κ_∞(A) = ‖A‖ ‖A⁻¹‖.
+  [[nodiscard]] double condition() const;
+  /// The matrices the bounds are made of.
+  [[nodiscard]] const Dense<Quad>& matrices() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace delassus::reference
