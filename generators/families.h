@@ -14,7 +14,7 @@ struct FamilyRow {
   Spec (*make)(Index n, std::uint64_t seed);   ///< n: size, about the number of bodies
   std::vector<Index> sizes;                    ///< of the gate
   Index exact_size;                            ///< size for exact arithmetic; −1: left out there
-  bool regular;                                ///< A is regular even where R⁻¹ = 0 (J has full row rank or R⁻¹ > 0)
+  bool regular = true;                         ///< A is regular (J has full row rank where R⁻¹ = 0)
 };
 
 [[nodiscard]] const std::vector<FamilyRow>& families();

@@ -70,6 +70,9 @@ struct Spec {
   std::vector<JointConstraintSpec> joints;    ///< their rows follow those of `links`
 };
 
+/// Degrees of freedom of a body's joint.
+[[nodiscard]] Index dof_count(const BodySpec& b);
+
 /// JSON text, and back. @throws ModelError naming `file`, the element and what is accepted.
 [[nodiscard]] std::string to_json(const Spec& spec);
 [[nodiscard]] Spec from_json(const std::string& text, const std::string& file);
