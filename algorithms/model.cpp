@@ -1,1 +1,235 @@
-// placeholder
+#include "algorithms/model.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <unordered_set>
+
+#include "algorithms/constraints.h"
+#include "algorithms/regularity.h"
+
+namespace delassus {
+namespace {
+
+constexpr double eps = 0x1p-53;
+
+std::string text(double x) {
+  std::ostringstream s;
+  s.precision(17);
+  s << x;
+  return s.str();
+}
+
+template <class V> std::string text(const V& x, int) {
+  std::string s;
+  for (Index i = 0; i < x.size(); ++i) s += (i ? " " : "") + text(x[i]);
+  return s;
+}
+
+struct JointRow {
+  std::string_view name;
+  Index q, dofs;
+};
+constexpr std::array<JointRow, 7> joint_table{{{"revolute", 1, 1},
+                                               {"prismatic", 1, 1},
+                                               {"universal", 2, 2},
+                                               {"planar", 3, 3},
+                                               {"spherical", 4, 3},
+                                               {"floating", 7, 6},
+                                               {"cylindrical", 2, 2}}};
+
+struct KindRow {
+  std::string_view name;
+  Index rows;  // −1: depends on the constraint
+};
+constexpr std::array<KindRow, 13> kind_table{{{"point", 3},
+                                              {"weld", 6},
+                                              {"hinge", 5},
+                                              {"universal", 4},
+                                              {"cylindrical", 4},
+                                              {"prismatic", 5},
+                                              {"planar", 3},
+                                              {"distance", 1},
+                                              {"contact", 3},
+                                              {"joint_friction", -1},
+                                              {"joint_lock", -1},
+                                              {"coupling", 1},
+                                              {"general", -1}}};
+
+/// Unit length to 30 ε · 3 (three squares are added).
+void check_unit(const Vector3<double>& axis, const std::string& file, const std::string& element) {
+  const double error = std::abs(axis.squaredNorm() - 1);
+  if (!(error < 30 * eps * 3)) throw ModelError(file, element, "(" + text(axis, 0) + ") is not a unit vector", "length 1");
+}
+
+/// Only finite, non-negative numbers, one per degree of freedom or none.
+void check_per_dof(const std::vector<double>& values, Index n, bool infinite, const std::string& unit,
+                   const std::string& file, const std::string& element) {
+  if (!values.empty() && static_cast<Index>(values.size()) != n)
+    throw ModelError(file, element, std::to_string(values.size()) + " values",
+                     std::to_string(n) + ", one per degree of freedom, or none");
+  for (const double v : values)
+    if (!(v >= 0) || (!infinite && std::isinf(v)))
+      throw ModelError(file, element, text(v) + " " + unit, std::string(infinite ? "" : "finite and ") + "0 or more " + unit);
+}
+
+void check_limits(const Joint& joint, Index n, const std::string& file, const std::string& element) {
+  for (const auto* limit : {&joint.lower, &joint.upper}) {
+    if (!limit->empty() && static_cast<Index>(limit->size()) != n)
+      throw ModelError(file, element + " limits", std::to_string(limit->size()) + " values",
+                       std::to_string(n) + ", one per degree of freedom, or none");
+    for (const double v : *limit)
+      if (std::isnan(v)) throw ModelError(file, element + " limits", "nan", "numbers [rad or m], infinity for none");
+  }
+  if (joint.lower.empty() || joint.upper.empty()) return;
+  for (Index k = 0; k < n; ++k)
+    if (joint.lower[k] > joint.upper[k])
+      throw ModelError(file, element + " limits", "lower " + text(joint.lower[k]) + " above upper " + text(joint.upper[k]),
+                       "lower at most upper [rad or m]");
+}
+
+void check_joint(const Joint& joint, const std::string& file, const std::string& body) {
+  const std::string element = body + " joint" + (joint.name.empty() ? "" : " " + joint.name);
+  const Index n = dof_count(joint.type);
+  check_pose(joint.placement, file, element + " placement");
+  if (joint.type != JointType::spherical && joint.type != JointType::floating)
+    check_unit(joint.axis, file, element + " axis");
+  if (joint.type == JointType::universal) {
+    check_unit(joint.axis2, file, element + " axis2");
+    if (!(joint.axis.cross(joint.axis2).norm() > 30 * eps * 3))
+      throw ModelError(file, element + " axis2", "is parallel to the first axis", "two independent axes");
+  }
+  check_per_dof(joint.armature, n, false, "kg m^2 or kg", file, element + " armature");
+  check_per_dof(joint.damping, n, false, "N m s/rad or N s/m", file, element + " damping");
+  check_per_dof(joint.friction, n, false, "N m or N", file, element + " friction");
+  check_per_dof(joint.effort, n, true, "N m or N", file, element + " effort");
+  check_per_dof(joint.velocity, n, true, "rad/s or m/s", file, element + " velocity");
+  check_limits(joint, n, file, element);
+}
+
+/// Symmetric, positive definite, and no principal moment above the sum of the two others; each to 30 ε · 3 times the
+/// largest entry or moment, the rounding of a rotated inertia.
+void check_inertia(const Matrix3<double>& I, const std::string& file, const std::string& element) {
+  const double asymmetry = (I - I.transpose()).cwiseAbs().maxCoeff();
+  if (!(asymmetry <= 30 * eps * 3 * I.cwiseAbs().maxCoeff()))
+    throw ModelError(file, element, "is not symmetric, by " + text(asymmetry) + " kg m^2", "a symmetric matrix");
+  const Vector3<double> moments = Eigen::SelfAdjointEigenSolver<Matrix3<double>>(I, Eigen::EigenvaluesOnly).eigenvalues();
+  const double slack = 30 * eps * 3 * moments[2];
+  if (!(moments[0] > slack))
+    throw ModelError(file, element, "principal moments (" + text(moments, 0) + ") kg m^2",
+                     "positive definite (smallest above " + text(slack) + ")");
+  if (!(moments[0] + moments[1] >= moments[2] - slack))
+    throw ModelError(file, element, "principal moments (" + text(moments, 0) + ") kg m^2 break the triangle inequality",
+                     "the largest at most the sum of the others, up to " + text(slack));
+}
+
+void check_shape(const Shape& shape, const std::string& file, const std::string& element) {
+  check_pose(shape.placement, file, element + " placement");
+  const Index sizes = shape.kind == Shape::Kind::sphere ? 1 : shape.kind == Shape::Kind::box ? 3 : 2;
+  for (Index k = 0; k < sizes; ++k)
+    if (!(shape.size[k] > 0) || std::isinf(shape.size[k]))
+      throw ModelError(file, element + " size", text(shape.size[k]) + " m", "finite and above 0 m");
+  if (!std::isfinite(shape.friction))
+    throw ModelError(file, element + " friction", text(shape.friction), "a finite coefficient, negative: not given");
+}
+
+void check_parent(Index parent, Index i, const std::string& file, const std::string& name) {
+  if (parent < ground || parent >= i)
+    throw ModelError(file, name, "parent " + std::to_string(parent) + " is not an earlier body",
+                     "-1 (ground) to " + std::to_string(i - 1));
+}
+
+/// Sizes and offsets of the body arrays, parents before children, names used once.
+void check_bodies(const Model& model, const std::string& file) {
+  const Index n = static_cast<Index>(model.bodies.size());
+  if (static_cast<Index>(model.first_q.size()) != n + 1 || static_cast<Index>(model.first_dof.size()) != n + 1)
+    throw ModelError(file, "model", "first_q and first_dof do not fit the bodies", "bodies appended by Model::add");
+  std::unordered_set<std::string_view> names;
+  for (Index i = 0; i < n; ++i) {
+    const Body& body = model.bodies[i];
+    check_parent(body.parent, i, file, body.name);
+    if (model.first_q[i + 1] - model.first_q[i] != q_size(body.joint.type) ||
+        model.first_dof[i + 1] - model.first_dof[i] != dof_count(body.joint.type))
+      throw ModelError(file, body.name, "first_q or first_dof does not fit the joint type", "bodies appended by Model::add");
+    if (!body.name.empty() && !names.insert(body.name).second)
+      throw ModelError(file, body.name, "two bodies have this name", "distinct names");
+    validate_body(body, file);
+  }
+}
+
+}  // namespace
+
+void check_pose(const Pose<double>& pose, const std::string& file, const std::string& element) {
+  if (!pose.rotation.allFinite() || !pose.translation.allFinite())
+    throw ModelError(file, element, "is not finite", "finite numbers [m]");
+  const Matrix3<double> error = pose.rotation.transpose() * pose.rotation - Matrix3<double>::Identity();
+  if (!(error.cwiseAbs().maxCoeff() < 30 * eps * 3) || !(pose.rotation.determinant() > 0))
+    throw ModelError(file, element, "rotation is not a proper orthogonal matrix", "orthonormal columns, determinant +1");
+}
+
+Index q_size(JointType t) { return joint_table[static_cast<std::size_t>(t)].q; }
+Index dof_count(JointType t) { return joint_table[static_cast<std::size_t>(t)].dofs; }
+std::string_view name(JointType t) { return joint_table[static_cast<std::size_t>(t)].name; }
+std::string_view name(Constraint::Kind k) { return kind_table[static_cast<std::size_t>(k)].name; }
+
+Index row_count(const Model& model, const Constraint& c) {
+  const Index rows = kind_table[static_cast<std::size_t>(c.kind)].rows;
+  if (rows >= 0) return rows;
+  if (c.kind == Constraint::Kind::general) return c.terms.empty() ? 0 : c.terms.front().K.rows();
+  if (c.a.body < 0 || c.a.body >= static_cast<Index>(model.bodies.size()))
+    throw ModelError("", c.name, "acts on the joint of body " + std::to_string(c.a.body), "a body of the model");
+  return dof_count(model.bodies[c.a.body].joint.type);
+}
+
+Index Model::find(const std::string& wanted) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].name == wanted) return static_cast<Index>(i);
+  std::string candidates;
+  constexpr std::size_t listed = 50;
+  for (std::size_t i = 0; i < std::min(bodies.size(), listed); ++i) candidates += (i ? ", " : "") + bodies[i].name;
+  if (bodies.size() > listed) candidates += ", and " + std::to_string(bodies.size() - listed) + " more";
+  throw ModelError("", wanted, "no body has this name", candidates.empty() ? "the model has no body" : candidates);
+}
+
+Index Model::add(Body body) {
+  const Index i = static_cast<Index>(bodies.size());
+  check_parent(body.parent, i, "", body.name);
+  validate_body(body, "");
+  first_q.push_back(first_q.back() + delassus::q_size(body.joint.type));
+  first_dof.push_back(first_dof.back() + dof_count(body.joint.type));
+  bodies.push_back(std::move(body));
+  return i;
+}
+
+void validate_body(const Body& body, const std::string& file) {
+  check_joint(body.joint, file, body.name);
+  for (std::size_t k = 0; k < body.shapes.size(); ++k)
+    check_shape(body.shapes[k], file, body.name + " shape " + std::to_string(k));
+  if (!std::isfinite(body.mass) || !body.com.allFinite() || !body.inertia.allFinite())
+    throw ModelError(file, body.name, "mass, com or inertia is not finite", "finite numbers [kg, m, kg m^2]");
+  const bool no_inertia = (body.inertia.array() == 0).all();
+  if (body.mass == 0 && no_inertia) return;
+  if (!(body.mass > 0))
+    throw ModelError(file, body.name + " mass", text(body.mass) + " kg", "above 0 kg, or 0 with zero inertia");
+  check_inertia(body.inertia, file, body.name + " inertia");
+}
+
+void validate(const Model& model, const std::string& file) {
+  check_bodies(model, file);
+  for (const Constraint& c : model.constraints) validate_constraint(model, c, file);
+  check_regular(model, file);
+}
+
+VectorX<double> neutral(const Model& model) {
+  VectorX<double> q = VectorX<double>::Zero(model.q_size());
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const JointType type = model.bodies[i].joint.type;
+    if (type == JointType::spherical) q[model.first_q[i]] = 1;
+    if (type == JointType::floating) q[model.first_q[i] + 3] = 1;
+  }
+  return q;
+}
+
+}  // namespace delassus
