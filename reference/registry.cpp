@@ -1,0 +1,49 @@
+#include "reference/definition.h"
+#include "reference/kkt_cholmod.h"
+#include "reference/maximal.h"
+#include "reference/reference.h"
+
+namespace delassus::reference {
+
+namespace {
+
+MatrixX<Quad> quad(const MatrixX<double>& X) {
+  MatrixX<Quad> Y(X.rows(), X.cols());
+  for (Index j = 0; j < X.cols(); ++j)
+    for (Index i = 0; i < X.rows(); ++i) Y(i, j) = Quad(X(i, j));
+  return Y;
+}
+
+using P = const Problem<double>&;
+using D = const Damping<double>&;
+using X = const MatrixX<double>&;
+
+bool definition_trusts(P p, D) { return p.structure->dofs() <= 250 && p.structure->rows <= 400; }
+MatrixX<Quad> definition_apply(P p, D d, X f) { return dense_apply(dense(p.cast<Quad>(), d.cast<Quad>()), quad(f)); }
+MatrixX<Quad> definition_solve(P p, D d, X a) { return dense_solve(dense(p.cast<Quad>(), d.cast<Quad>()), quad(a)); }
+
+bool maximal_trusts(P p, D) {
+  const Structure& s = *p.structure;
+  return 12 * s.bodies() + s.dofs() + s.rows <= 600;
+}
+MatrixX<Quad> maximal_row_apply(P p, D d, X f) { return maximal_apply(p.cast<Quad>(), d.cast<Quad>(), quad(f)); }
+MatrixX<Quad> maximal_row_solve(P p, D d, X a) { return maximal_solve(p.cast<Quad>(), d.cast<Quad>(), quad(a)); }
+
+}  // namespace
+
+const std::vector<ReferenceRow>& references() {
+  static const std::vector<ReferenceRow> table{
+      {"definition", "dense M, J, A from body Jacobians, LDLᵀ with diagonal pivoting, in Quad",
+       "up to 250 degrees of freedom and 400 rows (cost); M regular; solve: A regular, otherwise it throws",
+       unit_roundoff<Quad>, definition_trusts, definition_apply, definition_solve},
+      {"maximal", "every joint a constraint: one dense LU of the maximal-coordinate system, in Quad",
+       "up to 600 unknowns 12 N + n + m (cost); M regular; solve: A regular, otherwise it throws",
+       unit_roundoff<Quad>, maximal_trusts, maximal_row_apply, maximal_row_solve},
+      {"kkt_cholmod", "the maximal-coordinate system, sparse: CHOLMOD's LDLᵀ in double, refined with residuals in Quad",
+       "10⁴ bodies and more; not with massless bodies, redundant undamped rows, or a fill above 5·10⁷",
+       unit_roundoff<double>, kkt_cholmod_trusts, kkt_cholmod_apply, kkt_cholmod_solve},
+  };
+  return table;
+}
+
+}  // namespace delassus::reference

@@ -1,0 +1,148 @@
+#include "reference/sensitivity.h"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace delassus::reference {
+
+namespace {
+
+using Matrix = MatrixX<double>;
+using Vector = VectorX<double>;
+
+/// |X|, each entry rounded once.
+Matrix magnitudes(const MatrixX<Quad>& X) {
+  Matrix Y(X.rows(), X.cols());
+  for (Index j = 0; j < X.cols(); ++j)
+    for (Index i = 0; i < X.rows(); ++i) Y(i, j) = std::fabs(static_cast<double>(X(i, j)));
+  return Y;
+}
+
+VectorX<Quad> quad(const Vector& x) {
+  VectorX<Quad> y(x.size());
+  for (Index i = 0; i < x.size(); ++i) y[i] = Quad(x[i]);
+  return y;
+}
+
+/// The problem with every number replaced by its absolute value: its J and M are J_abs and M_abs.
+Problem<double> absolute(Problem<double> p) {
+  for (auto& s : p.S) s = s.cwiseAbs().eval();
+  for (auto& h : p.H) h = h.cwiseAbs().eval();
+  for (auto& k : p.K) k = k.cwiseAbs().eval();
+  for (auto& k : p.joint_K) k = std::fabs(k);
+  return p;
+}
+
+double norm(const Matrix& X) { return X.size() == 0 ? 0 : X.rowwise().sum().maxCoeff(); }
+double norm(const Vector& x) { return x.size() == 0 ? 0 : x.cwiseAbs().maxCoeff(); }
+
+}  // namespace
+
+struct Sensitivity::Data {
+  Dense<Quad> dense;
+  Matrix J_abs, M_abs, M_inverse_abs, R_inverse_abs;
+
+  // A⁻¹ and what only the bounds of solve need.
+  std::optional<PivotedLdlt<Quad>> A;
+  Matrix A_inverse_abs;
+  double A_norm = 0;
+
+  // R = (R⁻¹)⁻¹ and M_R = M + Jᵀ R J: what only the bound of the direct formula needs.
+  struct Direct {
+    MatrixX<Quad> R, MR_inverse;
+    Matrix R_abs, MR_inverse_abs, MR_abs;
+  };
+  std::optional<Direct> direct;
+
+  const PivotedLdlt<Quad>& factor() {
+    if (!A) {
+      A.emplace(factorise(dense));
+      A_norm = norm(magnitudes(dense.A()));
+      if (A->regular()) A_inverse_abs = magnitudes(A->inverse());
+    }
+    return *A;
+  }
+  void require_regular() {
+    if (!factor().regular())
+      throw std::runtime_error("A = J M⁻¹ Jᵀ + R⁻¹ is singular: pivot lost at row " + std::to_string(A->lost_row()));
+  }
+  const Direct& direct_formula() {
+    if (!direct) {
+      Direct d;
+      d.R = PivotedLdlt<Quad>(dense.R_inverse).inverse();
+      const MatrixX<Quad> MR = dense.M + product<Quad>(dense.J.transpose(), product(d.R, dense.J));
+      d.MR_inverse = PivotedLdlt<Quad>(MR).inverse();
+      d.R_abs = magnitudes(d.R);
+      d.MR_inverse_abs = magnitudes(d.MR_inverse);
+      d.MR_abs = M_abs + J_abs.transpose() * d.R_abs * J_abs;
+      direct = std::move(d);
+    }
+    return *direct;
+  }
+};
+
+Sensitivity::Sensitivity(const Problem<double>& problem, const Damping<double>& damping)
+    : data_(std::make_unique<Data>()) {
+  Data& d = *data_;
+  d.dense = reference::dense(problem.cast<Quad>(), damping.cast<Quad>());
+  const Problem<double> p = absolute(problem);
+  d.J_abs = constraint_jacobian(p);
+  d.M_abs = mass_matrix(p);
+  d.M_inverse_abs = magnitudes(PivotedLdlt<Quad>(d.dense.M).inverse());
+  d.R_inverse_abs = magnitudes(d.dense.R_inverse);
+}
+Sensitivity::~Sensitivity() = default;
+Sensitivity::Sensitivity(Sensitivity&&) noexcept = default;
+Sensitivity& Sensitivity::operator=(Sensitivity&&) noexcept = default;
+
+Index Sensitivity::rows() const { return data_->J_abs.rows(); }
+const Dense<Quad>& Sensitivity::matrices() const { return data_->dense; }
+bool Sensitivity::regular() const { return data_->factor().regular(); }
+
+VectorX<double> Sensitivity::apply_sensitivity(const VectorX<double>& x) const {
+  require(x.size() == rows(), "Sensitivity: wrong number of rows");
+  const Data& d = *data_;
+  const Vector force = d.J_abs.transpose() * x.cwiseAbs();
+  const Vector rate = d.M_inverse_abs * force;                             // |M⁻¹| J_absᵀ |x|
+  const Vector change = rate + d.M_inverse_abs * (d.M_abs * rate);         // and through δM
+  return d.J_abs * change + d.R_inverse_abs * x.cwiseAbs();
+}
+
+VectorX<Quad> Sensitivity::solve(const VectorX<double>& a) const {
+  require(a.size() == rows(), "Sensitivity: wrong number of rows");
+  data_->require_regular();
+  return data_->factor().solve(quad(a));
+}
+
+VectorX<double> Sensitivity::solve_sensitivity(const VectorX<double>& a, const VectorX<double>& lambda) const {
+  require(a.size() == rows(), "Sensitivity: wrong number of rows");
+  data_->require_regular();
+  return data_->A_inverse_abs * (apply_sensitivity(lambda) + a.cwiseAbs());
+}
+
+VectorX<double> Sensitivity::solve_normwise(const VectorX<double>& a, const VectorX<double>& lambda) const {
+  require(a.size() == rows(), "Sensitivity: wrong number of rows");
+  data_->require_regular();
+  const double residual = data_->A_norm * norm(lambda) + norm(apply_sensitivity(lambda)) + norm(a);
+  return Vector::Constant(rows(), norm(data_->A_inverse_abs) * residual);
+}
+
+VectorX<double> Sensitivity::solve_amplified(const VectorX<double>& a) const {
+  require(a.size() == rows(), "Sensitivity: wrong number of rows");
+  const Data::Direct& d = data_->direct_formula();
+  const Matrix& J = data_->J_abs;
+  const VectorX<Quad> Ra = product<Quad>(d.R, quad(a));
+  const MatrixX<Quad> nu_exact = product<Quad>(d.MR_inverse, product<Quad>(data_->dense.J.transpose(), Ra));
+  const Vector nu = magnitudes(nu_exact);
+  const Vector force = d.R_abs * a.cwiseAbs();                             // |R||a|
+  const Vector of_rate = d.MR_inverse_abs * (d.MR_abs * nu + J.transpose() * force);
+  return d.R_abs * (a.cwiseAbs() + J * (nu + of_rate));
+}
+
+double Sensitivity::condition() const {
+  data_->require_regular();
+  return data_->A_norm * norm(data_->A_inverse_abs);
+}
+
+}  // namespace delassus::reference
