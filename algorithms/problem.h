@@ -86,6 +86,8 @@ template <class T> struct Damping {
   }
   /// y = R⁻¹ x. Shapes: m.
   void multiply(const VectorX<T>& x, VectorX<T>& y) const;
+  /// @throws std::logic_error when the sizes do not fit, or a block is not within the rows of one constraint.
+  void check_sizes(const Structure& s) const;
   /// @throws ModelError for a negative or non-finite entry, a block that is not symmetric or overlaps.
   void validate(const Structure& s) const;
   template <class U> [[nodiscard]] Damping<U> cast() const;

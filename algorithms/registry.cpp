@@ -1,1 +1,62 @@
-// placeholder
+// The table of operators. A row added here is tested, benchmarked, listed and documented.
+#include "algorithms/aba_sweep.h"
+#include "algorithms/cg.h"
+#include "algorithms/dense_cholesky.h"
+#include "algorithms/lcaba.h"
+
+namespace delassus {
+namespace {
+
+template <template <class> class Op, class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<Op<T>>(); }
+
+template <template <class> class Op>
+constexpr std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>> makers() {
+  return {make<Op, double>, make<Op, float>, make<Op, Quad>, make<Op, Counted>, make<Op, Rational>};
+}
+
+}  // namespace
+
+std::string_view name(ErrorClass e) {
+  switch (e) {
+    case ErrorClass::componentwise: return "componentwise";
+    case ErrorClass::normwise: return "normwise";
+    case ErrorClass::amplified: return "amplified";
+  }
+  return "unknown";
+}
+
+const std::vector<OperatorRow>& operators() {
+  static const std::vector<OperatorRow> table = {
+      {.name = "dense_cholesky", .summary = "explicit matrix, three dense steps",
+       .formula = "A = (J L⁻ᵀ) D⁻¹ (J L⁻ᵀ)ᵀ + R⁻¹, M = L D Lᵀ", .source = "paper, section II",
+       .cost = "O(n³ + n² m + n m² + m³)", .applies = true, .solves = true, .zero_damping = true,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise,
+       .makers = makers<DenseCholesky>()},
+      {.name = "aba_sweep", .summary = "Delassus operator by two articulated-body sweeps",
+       .formula = "a = J M⁻¹ Jᵀ f + R⁻¹ f", .source = "paper, Algorithms 1–3 merged (section IV-D)",
+       .cost = "O(n + m)", .applies = true, .solves = false, .zero_damping = false, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::componentwise,
+       .makers = makers<AbaSweep>()},
+      {.name = "lcaba", .summary = "damped inverse by loop-constrained articulated-body sweeps",
+       .formula = "f = R a − R J (M + Jᵀ R J)⁻¹ Jᵀ R a", .source = "paper, Algorithm 4 and equation (9) merged (section V-D)",
+       .cost = "O(n + m) with local loops, O(n + m² d + m³) at worst", .applies = false, .solves = true,
+       .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
+       .solve_error = ErrorClass::amplified, .makers = makers<Lcaba>()},
+      {.name = "cg", .summary = "conjugate gradients on aba_sweep",
+       .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
+       .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .makers = makers<Cg>()},
+  };
+  return table;
+}
+
+const OperatorRow& find_operator(std::string_view wanted) {
+  std::string accepted;
+  for (const OperatorRow& row : operators()) {
+    if (row.name == wanted) return row;
+    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw ModelError("", "operator", "unknown name '" + std::string(wanted.substr(0, 80)) + "'", accepted);
+}
+
+}  // namespace delassus

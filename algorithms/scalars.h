@@ -116,14 +116,16 @@ struct Rational {
 inline Rational abs(const Rational& x) { return Rational(mpq_class(::abs(x.v))); }
 inline bool isfinite(const Rational&) { return true; }
 
-/// What a recursion may ask of its scalar beyond + − · /: the pivot policy.
+/// What a recursion may ask of its scalar beyond + − · /.
 template <class T> struct ScalarTraits {
   static constexpr bool exact = false;
   static bool usable_pivot(const T& d) { using std::isfinite; return d > T(0) && isfinite(d); }
+  static T nan() { return T(std::numeric_limits<double>::quiet_NaN()); }  ///< marks a result that must not be used
 };
 template <> struct ScalarTraits<Rational> {
   static constexpr bool exact = true;
   static bool usable_pivot(const Rational& d) { return d > Rational(0); }
+  static Rational nan() { return {}; }
 };
 
 /// Unit roundoff of a scalar; 0 where it is exact.

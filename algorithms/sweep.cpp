@@ -1,0 +1,102 @@
+// The two sweeps of Factor: y = J M_R⁻¹ Jᵀ x. Active steps only.
+#include "algorithms/factor.h"
+
+namespace delassus {
+namespace {
+// V's from a buffer of V's: f of every active body, then u of every active column.
+template <class V> Six<V>* forces(V* work) { return reinterpret_cast<Six<V>*>(work); }
+}  // namespace
+
+// Alg. 1, lines 1–6: f_i = Σ K_e^iᵀ x_e, u_i = 𝒦ᵢᵀ x_i (in the basis of D).
+template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>* f, V* u) const {
+  for (int i = 0; i < plan_->active(); ++i) f[i] = Six<V>::zero();
+  for (int c = 0; c < plan_->active_columns(); ++c) u[c] = V{};
+  for (const Attachment& at : attachments_)
+    for (Index r = 0; r < at.rows; ++r) add_scaled(f[at.step], k_[at.first + r], x[at.row + r]);
+  for (const JointRows& j : joint_rows_)
+    for (Index r = 0; r < j.rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) u[j.column + c] += x[j.row + r] * joint_k_[j.first + r * j.dofs + c];
+}
+
+// u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹ u; u ← D⁻¹u      (Alg. 2, lines 2–6; Alg. 4, lines 13, 23, 31)
+template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) const {
+  const int a = plan_->first_active, column0 = plan_->first_column[a];
+  for (const Plan::Run& run : plan_->runs) {
+    if (run.simple && run.dofs == 1) {
+      for (int i = run.begin; i < run.end; ++i) {
+        const int c = plan_->first_column[i];
+        Six<V> fi = f[i - a];
+        V& uc = u[c - column0];
+        uc += dot(s_[c], fi);
+        subtract_scaled(fi, w_[plan_->first_w[i]], uc);
+        add(f[plan_->parent[i] - a], fi);
+        uc *= d_inverse_[c];
+      }
+      continue;
+    }
+    for (int i = run.begin; i < run.end; ++i) {
+      const int first = plan_->first_column[i];
+      V* const ui = u + first - column0;
+      for (int c = 0; c < run.dofs; ++c) ui[c] += dot(s_[first + c], f[i - a]);
+      if (plan_->parent[i] >= 0) add(f[plan_->parent[i] - a], f[i - a]);
+      const Six<T>* w = w_.data() + plan_->first_w[i];
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
+        for (int c = 0; c < run.dofs; ++c) subtract_scaled(f[plan_->members[k].step - a], *w++, ui[c]);
+      for (int c = 0; c < run.dofs; ++c) ui[c] *= d_inverse_[first + c];
+    }
+  }
+}
+
+// ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j; a_i = a_π + S_i ν      (Alg. 4, lines 33–37); a takes the place of f
+template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) const {
+  const int a = plan_->first_active, column0 = plan_->first_column[a];
+  for (auto run = plan_->runs.rbegin(); run != plan_->runs.rend(); ++run) {
+    if (run->simple && run->dofs == 1) {
+      for (int i = run->end; i-- > run->begin;) {
+        const int c = plan_->first_column[i];
+        Six<V> ai = f[plan_->parent[i] - a];
+        V& uc = u[c - column0];
+        uc -= dot(w_[plan_->first_w[i]], ai);
+        add_scaled(ai, s_[c], uc);
+        f[i - a] = ai;
+      }
+      continue;
+    }
+    for (int i = run->end; i-- > run->begin;) {
+      const int first = plan_->first_column[i];
+      V* const ui = u + first - column0;
+      const Six<T>* w = w_.data() + plan_->first_w[i];
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
+        for (int c = 0; c < run->dofs; ++c) ui[c] -= dot(*w++, f[plan_->members[k].step - a]);
+      Six<V> ai = plan_->parent[i] >= 0 ? f[plan_->parent[i] - a] : Six<V>::zero();
+      for (int c = 0; c < run->dofs; ++c) add_scaled(ai, s_[first + c], ui[c]);
+      f[i - a] = ai;
+    }
+  }
+}
+
+// Alg. 3, lines 4–8: y_e = Σ K_e^i a_i, y_i = 𝒦ᵢ ν_i.
+template <class T> template <class V> void Factor<T>::gather(const Six<V>* f, const V* u, V* y) const {
+  for (Index r = 0; r < structure_->rows; ++r) y[r] = V{};
+  for (const Attachment& at : attachments_)
+    for (Index r = 0; r < at.rows; ++r) y[at.row + r] += dot(k_[at.first + r], f[at.step]);
+  for (const JointRows& j : joint_rows_)
+    for (Index r = 0; r < j.rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) y[j.row + r] += u[j.column + c] * joint_k_[j.first + r * j.dofs + c];
+}
+
+template <class T> template <class V> void Factor<T>::project(const V* x, V* y, V* work) const {
+  Six<V>* const f = forces(work);
+  V* const u = work + plan_->active() * (sizeof(Six<V>) / sizeof(V));
+  scatter(x, f, u);
+  backward(f, u);
+  forward(f, u);
+  gather(f, u, y);
+}
+
+#define DELASSUS_INSTANTIATE(T) template void Factor<T>::project<T>(const T*, T*, T*) const;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
+template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
+
+}  // namespace delassus
