@@ -134,7 +134,7 @@ void check_closed(const Loops& loops, const VectorX<double>& e, const Poses<doub
     const Index m = row_count(loops.model, c);
     const double worst = e.segment(row, m).cwiseAbs().maxCoeff(), accepted = 1e-9 * size_of(c, at);
     row += m;
-    if (worst <= accepted) continue;
+    if (e.segment(row - m, m).allFinite() && worst <= accepted) continue;
     std::ostringstream found, limit;
     found << "loop cannot be closed from this configuration, residual " << worst << " m or rad";
     limit << "at most " << accepted << " m or rad after Newton's method";
