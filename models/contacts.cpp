@@ -1,0 +1,198 @@
+#include "models/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "models/box_contacts.h"
+
+namespace delassus {
+namespace {
+
+using V3 = Vector3<double>;
+
+/// A primitive at the configuration; positions from the reference point of its tree.
+struct Placed {
+  Index body;
+  const Shape* shape;
+  Pose<double> pose;
+  double radius;  // of a sphere around pose.translation that holds the shape
+};
+
+double bounding_radius(const Shape& s) {
+  switch (s.kind) {
+    case Shape::Kind::sphere: return s.size[0];
+    case Shape::Kind::capsule: return s.size[0] + s.size[1];
+    case Shape::Kind::cylinder: return std::hypot(s.size[0], s.size[1]);
+    case Shape::Kind::box: return s.size.norm();
+  }
+  return 0;
+}
+
+const V3& reference_of(const Poses<double>& poses, Index body) {
+  return poses.reference[static_cast<std::size_t>(poses.tree[static_cast<std::size_t>(body)])];
+}
+
+double smaller_friction(double a, double b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
+
+/// Lowest points of a shape, candidates only: the caller drops those above the margin.
+std::vector<V3> low_points(const Placed& p, double margin) {
+  const V3 &size = p.shape->size, down(0, 0, -1);
+  const V3 axis = p.pose.rotation.col(2);
+  std::vector<V3> out;
+  switch (p.shape->kind) {
+    case Shape::Kind::sphere: return {p.pose.translation + size[0] * down};
+    case Shape::Kind::capsule:
+      for (const double s : {-1.0, 1.0}) out.push_back(p.pose.translation + s * size[1] * axis + size[0] * down);
+      return out;
+    case Shape::Kind::box:
+      for (int k = 0; k < 8; ++k)
+        out.push_back(p.pose * V3(k & 1 ? size[0] : -size[0], k & 2 ? size[1] : -size[1], k & 4 ? size[2] : -size[2]));
+      return out;
+    case Shape::Kind::cylinder: break;
+  }
+  const V3 slope = down - axis.dot(down) * axis;  // towards the lowest point of a rim
+  const bool flat = 2 * size[0] * slope.norm() <= margin;
+  const V3 u = flat ? V3(p.pose.rotation.col(0)) : V3(slope.normalized());
+  for (const double s : {-1.0, 1.0}) {
+    const V3 centre = p.pose.translation + s * size[1] * axis;
+    out.push_back(centre + size[0] * u);
+    if (!flat) continue;
+    const V3 v = axis.cross(u);
+    for (const V3& w : {v, V3(-u), V3(-v)}) out.push_back(centre + size[0] * w);
+  }
+  return out;
+}
+
+void ground_contacts(const Placed& p, double height, double margin, std::vector<ContactPoint>& out) {
+  std::vector<ContactPoint> found;
+  for (V3 x : low_points(p, margin)) {
+    const double gap = x[2] - height;
+    if (gap > margin) continue;
+    x[2] = height;
+    found.push_back({p.body, ground, x, {0, 0, 1}, gap, p.shape->friction});
+  }
+  if (found.size() > 4) {  // the 4 deepest, in the order found
+    std::vector<double> gaps;
+    for (const ContactPoint& c : found) gaps.push_back(c.gap);
+    std::nth_element(gaps.begin(), gaps.begin() + 3, gaps.end());
+    std::size_t kept = 0;
+    std::erase_if(found, [&](const ContactPoint& c) { return c.gap > gaps[3] || ++kept > 4; });
+  }
+  out.insert(out.end(), found.begin(), found.end());
+}
+
+/// Half the axis of a sphere (zero) or capsule.
+V3 half_axis(const Placed& p) {
+  return p.shape->kind == Shape::Kind::capsule ? V3(p.shape->size[1] * p.pose.rotation.col(2)) : V3::Zero();
+}
+
+/// Closest points of the segments p ± u and q ± v, as parameters in [−1, 1].
+std::pair<double, double> closest(const V3& p, const V3& u, const V3& q, const V3& v) {
+  const V3 d = q - p;
+  const double a = u.squaredNorm(), b = u.dot(v), c = v.squaredNorm(), denominator = a * c - b * b;
+  double s = denominator > 1e-12 * a * c ? std::clamp((d.dot(u) * c - b * d.dot(v)) / denominator, -1.0, 1.0) : 0;
+  const double t = c > 0 ? std::clamp((s * b - d.dot(v)) / c, -1.0, 1.0) : 0;
+  if (a > 0) s = std::clamp((d.dot(u) + t * b) / a, -1.0, 1.0);
+  return {s, t};
+}
+
+std::vector<ShapeContact> round_round(const Placed& a, const Placed& b, const V3& shift) {
+  const V3 u = half_axis(a), v = half_axis(b), q0 = b.pose.translation + shift;
+  const auto [s, t] = closest(a.pose.translation, u, q0, v);
+  const V3 p = a.pose.translation + s * u, q = q0 + t * v, d = p - q;
+  const double distance = d.norm(), gap = distance - a.shape->size[0] - b.shape->size[0];
+  const V3 n = distance > 0 ? V3(d / distance) : V3(0, 0, 1);
+  return {{q + (b.shape->size[0] + gap / 2) * n, n, gap}};
+}
+
+/// Contacts of a pair; `shift` takes positions of b's tree into a's.
+std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const V3& shift, double margin) {
+  const bool box_a = a.shape->kind == Shape::Kind::box, box_b = b.shape->kind == Shape::Kind::box;
+  const PlacedBox A{a.shape->size, a.pose}, B{b.shape->size, {b.pose.rotation, b.pose.translation + shift}};
+  if (box_a && box_b) return box_box(A, B, margin);
+  if (!box_a && !box_b) return round_round(a, b, shift);
+  const Placed& round = box_a ? b : a;
+  const V3 centre = round.pose.translation + (box_a ? shift : V3::Zero()), h = half_axis(round);
+  std::vector<ShapeContact> out;
+  for (const double s : {-1.0, 1.0}) {
+    if (s > 0 && round.shape->kind == Shape::Kind::sphere) break;
+    ShapeContact c = sphere_box(centre + s * h, round.shape->size[0], box_a ? A : B);
+    if (box_a) c.normal = -c.normal;
+    out.push_back(c);
+  }
+  return out;
+}
+
+/// Pairs of shapes whose bounding spheres come within the margin: sorted along x and swept.
+std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Placed>& shapes, const Poses<double>& poses,
+                                                            const ContactSearch& search) {
+  std::vector<V3> at(shapes.size());
+  std::vector<std::size_t> order(shapes.size());
+  for (std::size_t i = 0; i < shapes.size(); ++i) at[i] = reference_of(poses, shapes[i].body) + shapes[i].pose.translation, order[i] = i;
+  auto left = [&](std::size_t i) { return at[i][0] - shapes[i].radius; };
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
+  std::vector<std::pair<std::size_t, std::size_t>> out;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    for (std::size_t l = k + 1; l < order.size(); ++l) {
+      const std::size_t i = std::min(order[k], order[l]), j = std::max(order[k], order[l]);
+      if (left(order[l]) > at[order[k]][0] + shapes[order[k]].radius + search.margin) break;
+      if (search.object[static_cast<std::size_t>(shapes[i].body)] == search.object[static_cast<std::size_t>(shapes[j].body)]) continue;
+      if ((at[i] - at[j]).norm() <= shapes[i].radius + shapes[j].radius + search.margin) out.emplace_back(i, j);
+    }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+Matrix3<double> frame_about(const Vector3<double>& z) {
+  const V3 helper = std::abs(z[1]) < 0.9 ? V3::UnitY() : V3::UnitZ();
+  const V3 x = helper.cross(z).normalized();
+  Matrix3<double> out;
+  out << x, z.cross(x), z;
+  return out;
+}
+
+Pose<double> world_pose(const Poses<double>& poses, Index body) {
+  if (body == ground) return {};
+  const auto i = static_cast<std::size_t>(body);
+  return {poses.rotation[i], reference_of(poses, body) + poses.position[i]};
+}
+
+Pose<double> relative_pose(const Poses<double>& poses, Index in, Index body) {
+  if (in == ground) return world_pose(poses, body);
+  if (body == ground) return world_pose(poses, in).inverse();
+  const auto i = static_cast<std::size_t>(in), j = static_cast<std::size_t>(body);
+  const V3 shift = reference_of(poses, body) - reference_of(poses, in);
+  const Matrix3<double> Rt = poses.rotation[i].transpose();
+  return {Rt * poses.rotation[j], Rt * (shift + (poses.position[j] - poses.position[i]))};
+}
+
+std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses, const ContactSearch& search,
+                                        std::vector<std::string>& notes) {
+  std::vector<Placed> shapes;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+    for (const Shape& s : model.bodies[i].shapes)
+      shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s)});
+  std::vector<ContactPoint> out;
+  if (search.ground)
+    for (const Placed& p : shapes) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], search.margin, out);
+  Index skipped = 0;
+  for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
+    const Placed &a = shapes[i], &b = shapes[j];
+    if (a.shape->kind == Shape::Kind::cylinder || b.shape->kind == Shape::Kind::cylinder) {
+      ++skipped;
+      continue;
+    }
+    const V3 shift = reference_of(poses, b.body) - reference_of(poses, a.body);
+    for (const ShapeContact& c : pair_contacts(a, b, shift, search.margin))
+      if (c.gap <= search.margin)
+        out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction)});
+  }
+  if (skipped > 0) notes.push_back(std::to_string(skipped) + " near pairs with a cylinder were not tested for contact");
+  return out;
+}
+
+}  // namespace delassus

@@ -1,0 +1,46 @@
+// Contact points found from the collision primitives of a model at a configuration.
+//
+// Found are points whose gap is at most `margin` (penetration included), at most 4 per pair of surfaces:
+//   ground   sphere: lowest point · box: vertices · capsule: lowest point of each end · cylinder: up to 4 rim points
+//   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
+//            edges), capsule–box by its two end spheres, capsule–capsule at the closest points
+// Pairs that involve a cylinder and pairs of links of one robot are not tested; a note counts the former.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "algorithms/kinematics.h"
+
+namespace delassus {
+
+struct ContactPoint {
+  Index body = ground, other = ground;  ///< other: ground for the plane
+  Vector3<double> point{0, 0, 0};       ///< on the plane, or midway between two shapes; from the reference point of `body`'s tree
+  Vector3<double> normal{0, 0, 1};      ///< unit, world axes, from `other` to `body`
+  double gap = 0;                       ///< [m], negative: penetration
+  double friction = -1;                 ///< the smaller coefficient of the two shapes; negative: not given
+};
+
+struct ContactSearch {
+  double margin = 1e-3;         ///< [m]
+  bool ground = false;
+  double ground_height = 0;     ///< [m]
+  std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
+};
+
+/// Points in the order (first body, second body, shapes, position on the face). `notes` gets one sentence when pairs
+/// were skipped. Cost O(N log N + pairs) for shapes spread out along x.
+[[nodiscard]] std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses,
+                                                      const ContactSearch& search, std::vector<std::string>& notes);
+
+/// Two axes that complete z to a right-handed orthonormal frame [x y z]; z = (0, 0, 1) gives the identity.
+[[nodiscard]] Matrix3<double> frame_about(const Vector3<double>& z);
+
+/// X of a body's frame in the world (identity for the ground).
+[[nodiscard]] Pose<double> world_pose(const Poses<double>& poses, Index body);
+
+/// X of `body`'s frame in `in`'s frame, world positions cancelled before they round.
+[[nodiscard]] Pose<double> relative_pose(const Poses<double>& poses, Index in, Index body);
+
+}  // namespace delassus

@@ -1,0 +1,58 @@
+#include "models/scene.h"
+
+#include <filesystem>
+
+#include "models/message.h"
+#include "models/scene_loader.h"
+
+namespace delassus {
+
+SceneLoader::SceneLoader(const std::string& path) : path_(path), root_(Yaml::open(path)) {}
+
+Scene SceneLoader::run() {
+  root_.keys({"note", "pose", "gravity", "robots", "boxes", "ground", "constraints", "contacts", "damping"});
+  scene_.file = path_;
+  scene_.name = std::filesystem::path(path_).stem().string();
+  if (root_.has("note")) scene_.note = root_.at("note").text("a text");
+  if (root_.has("pose")) {
+    const std::string text = root_.at("pose").text("provisional, recorded");
+    if (text != "provisional" && text != "recorded") root_.at("pose").fail(in_quotes(text) + " is not understood", "provisional, recorded");
+    scene_.provisional_pose = text == "provisional";
+  }
+  if (root_.has("gravity")) {
+    scene_.has_gravity = true;
+    scene_.gravity = root_.at("gravity").vector3(" [m/s^2]");
+  }
+  if (root_.has("ground")) {
+    const Yaml y = root_.at("ground");
+    y.keys({"z", "friction"});
+    scene_.has_ground = true;
+    if (y.has("z")) scene_.ground_height = y.at("z").number(" [m]");
+    if (y.has("friction")) scene_.ground_friction = y.at("friction").non_negative("");
+  }
+  if (root_.has("robots"))
+    for (const Yaml& y : root_.at("robots").list("a list of {name, urdf, ...}")) read_robot(y);
+  if (root_.has("boxes"))
+    for (const Yaml& y : root_.at("boxes").list("a list of {name, mass, size, ...}")) read_box(y);
+  if (scene_.model.dofs() == 0) root_.fail("nothing in the scene can move", "robots or boxes");
+  if (root_.has("constraints"))
+    for (const Yaml& y : root_.at("constraints").list("a list of {kind, ...}")) read_constraint(y);
+  poses(scene_.model, scene_.q, poses_);
+  fill_open(true);
+  for (const Constraint& c : scene_.model.constraints) scene_.has_loops = scene_.has_loops || c.loop;
+  scene_.assembly.q = scene_.q;
+  if (scene_.has_loops) {
+    scene_.assembly = assemble(scene_.model, scene_.q, path_);
+    scene_.q = scene_.assembly.q;
+    poses(scene_.model, scene_.q, poses_);
+  }
+  fill_open(false);
+  if (root_.has("contacts")) read_contacts(root_.at("contacts"));
+  read_damping(root_);
+  validate(scene_.model, path_);
+  return std::move(scene_);
+}
+
+Scene load_scene(const std::string& path) { return SceneLoader(path).run(); }
+
+}  // namespace delassus

@@ -1,0 +1,100 @@
+#include <Eigen/Eigenvalues>
+
+#include "models/message.h"
+#include "models/scene_loader.h"
+
+namespace delassus {
+
+/// {of, at, to, normal, friction}: the point is given in the link's frame, the normal in world axes.
+void SceneLoader::read_contact(const Yaml& y, double friction) {
+  y.keys({"name", "of", "at", "to", "normal", "friction", "damping"});
+  const End a = end_of(y.at("of")), b = y.has("to") ? end_of(y.at("to")) : End{{}, "ground"};
+  if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and ground");
+  if (b.name == "ground" && !y.has("normal") && !scene_.has_ground) y.fail("the scene has no ground", "ground: {z: ...}, or normal: [x, y, z]");
+  Vector3<double> normal(0, 0, 1);
+  if (y.has("normal")) normal = y.at("normal").direction();
+  else if (b.frame.body != ground) y.fail("key normal is missing", "normal: [x, y, z] in world axes, from `to` to `of`");
+  const Vector3<double> at = y.has("at") ? y.at("at").vector3(" [m]") : Vector3<double>(0, 0, 0);
+  Constraint c;
+  c.kind = Constraint::Kind::contact;
+  c.name = "contact " + a.name + " - " + b.name;
+  c.a.body = a.frame.body;
+  c.a.placement = {world_pose(poses_, a.frame.body).rotation.transpose() * frame_about(normal), a.frame.placement * at};
+  c.b = {b.frame.body, relative_pose(poses_, b.frame.body, a.frame.body) * c.a.placement};
+  c.friction = y.has("friction") ? y.at("friction").non_negative("") : b.frame.body == ground ? friction : -1;
+  add(y, std::move(c));
+}
+
+void SceneLoader::detect(const Yaml* y) {
+  ContactSearch search;
+  search.ground = scene_.has_ground;
+  search.ground_height = scene_.ground_height;
+  search.object = object_;
+  if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
+  for (const ContactPoint& p : find_contacts(scene_.model, poses_, search, scene_.notes)) {
+    const auto i = static_cast<std::size_t>(p.body);
+    Constraint c;
+    c.kind = Constraint::Kind::contact;
+    c.name = "contact " + scene_.model.bodies[i].name + " - " + (p.other == ground ? "ground" : scene_.model.bodies[static_cast<std::size_t>(p.other)].name);
+    const Matrix3<double> Rt = poses_.rotation[i].transpose();
+    c.a = {p.body, {Rt * frame_about(p.normal), Rt * (p.point - poses_.position[i])}};
+    c.b = {p.other, relative_pose(poses_, p.other, p.body) * c.a.placement};
+    c.friction = p.friction >= 0 ? p.friction : scene_.ground_friction;
+    if (p.other == ground && scene_.ground_friction >= 0) c.friction = scene_.ground_friction;
+    if (y != nullptr && y->has("friction")) c.friction = y->at("friction").non_negative("");
+    scene_.model.constraints.push_back(std::move(c));
+    own_damping_.push_back(y != nullptr && y->has("damping") ? std::optional<Yaml>(y->at("damping")) : std::nullopt);
+  }
+}
+
+void SceneLoader::read_contacts(const Yaml& y) {
+  const std::string accepted = "detect, {detect: true, margin, friction, damping}, or a list of {of, at, to, normal, friction, damping}";
+  if (y.is_list()) {
+    for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
+  } else if (y.is_map()) {
+    y.keys({"detect", "margin", "friction", "damping"});
+    if (y.at("detect").boolean()) detect(&y);
+  } else if (y.text(accepted) == "detect") {
+    detect(nullptr);
+  } else {
+    y.fail(in_quotes(y.text(accepted)) + " is not understood", accepted);
+  }
+}
+
+/// R⁻¹ over `rows` rows from `row` on: a number, a list, or a symmetric positive semidefinite block.
+void SceneLoader::damp(const Yaml& y, Index row, Index rows) {
+  const std::string n = std::to_string(rows), unit = " [1/kg]";
+  auto entry = [&](Index k) -> double& { return scene_.damping.diagonal[static_cast<std::size_t>(row + k)]; };
+  if (y.is_scalar()) {
+    for (Index k = 0; k < rows; ++k) entry(k) = y.non_negative(unit);
+    return;
+  }
+  const std::vector<Yaml> items = y.list("a number >= 0, a list of " + n + ", or a symmetric block of " + n + " x " + n + unit);
+  if (items.empty() || !items[0].is_list()) {
+    if (static_cast<Index>(items.size()) != rows) y.fail("has " + std::to_string(items.size()) + " entries", n + " numbers >= 0" + unit);
+    for (Index k = 0; k < rows; ++k) entry(k) = items[static_cast<std::size_t>(k)].non_negative(unit);
+    return;
+  }
+  const MatrixX<double> R = y.matrix(rows, rows, unit);
+  if (R != R.transpose()) y.fail("the block is not symmetric", "a symmetric positive semidefinite block" + unit);
+  const double least = Eigen::SelfAdjointEigenSolver<MatrixX<double>>(R, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  if (least < -30 * std::numeric_limits<double>::epsilon() * static_cast<double>(rows) * R.norm())
+    y.fail("the block has the eigenvalue " + std::to_string(least), "a symmetric positive semidefinite block" + unit);
+  for (Index k = 0; k < rows; ++k) entry(k) = 0;
+  scene_.damping.blocks.push_back({row, R});
+}
+
+void SceneLoader::read_damping(const Yaml& root) {
+  std::vector<Index> first{0};
+  for (const Constraint& c : scene_.model.constraints) first.push_back(first.back() + row_count(scene_.model, c));
+  scene_.damping = Damping<double>::uniform(first.back(), 0);
+  if (root.has("damping")) {
+    const Yaml y = root.at("damping");
+    if (y.is_list() && y.list("").size() > 0 && y.list("")[0].is_list()) y.fail("a block over all rows", "a number or a list; blocks belong to single constraints");
+    damp(y, 0, first.back());
+  }
+  for (std::size_t k = 0; k < own_damping_.size(); ++k)
+    if (own_damping_[k]) damp(*own_damping_[k], first[k], first[k + 1] - first[k]);
+}
+
+}  // namespace delassus

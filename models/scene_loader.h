@@ -1,0 +1,71 @@
+// The steps of reading a scene; internal to models/.
+//   robots and boxes → constraints → loops closed → what is left open follows the pose → contacts → damping
+#pragma once
+
+#include <optional>
+
+#include "models/contacts.h"
+#include "models/scene.h"
+#include "models/urdf.h"
+#include "models/yaml.h"
+
+namespace delassus {
+
+class SceneLoader {
+ public:
+  explicit SceneLoader(const std::string& path);
+  Scene run();
+
+ private:
+  /// A constraint whose second frame (or length) is where the first one is at the pose.
+  struct Open {
+    std::size_t constraint;
+    bool translation, rotation, length;
+    Yaml at;
+  };
+  struct End {
+    Frame frame;
+    std::string name;
+  };
+
+  // scene_robots.cpp
+  void read_robot(const Yaml& y);
+  void read_box(const Yaml& y);
+  [[nodiscard]] std::string new_name(const Yaml& y);
+  [[nodiscard]] UrdfOptions urdf_options(const Yaml& y, const std::string& name) const;
+  void set_joints(const UrdfRobot& robot, const Yaml& joints);
+  void set_mimics(const UrdfRobot& robot);
+  void set_pose(Index body, const Pose<double>& pose);
+  void grow_q();
+
+  // scene_constraints.cpp
+  void read_constraint(const Yaml& y);
+  void read_two_ends(const Yaml& y, Constraint c);
+  void read_joints(const Yaml& y, Constraint::Kind kind);
+  void read_coupling(const Yaml& y, Constraint c);
+  void read_general(const Yaml& y, Constraint c);
+  void add(const Yaml& y, Constraint c);
+  [[nodiscard]] End end_of(const Yaml& y) const;
+  [[nodiscard]] Index joint_of(const Yaml& y) const;
+  [[nodiscard]] const UrdfRobot& robot_of(const Yaml& y) const;
+  void fill_open(bool loops);
+
+  // scene_contacts.cpp
+  void read_contacts(const Yaml& y);
+  void read_contact(const Yaml& y, double friction);
+  void detect(const Yaml* y);
+  void read_damping(const Yaml& root);
+  void damp(const Yaml& y, Index row, Index rows);
+
+  std::string path_;
+  Yaml root_;
+  Scene scene_;
+  std::vector<UrdfRobot> robots_;
+  std::vector<Index> object_;                     // per body: index of its robot or box
+  Index objects_ = 0;
+  std::vector<Open> open_;
+  std::vector<std::optional<Yaml>> own_damping_;  // per constraint
+  Poses<double> poses_;                           // at scene_.q
+};
+
+}  // namespace delassus

@@ -1,0 +1,163 @@
+#include <filesystem>
+
+#include <Eigen/Geometry>
+
+#include "models/message.h"
+#include "models/scene_loader.h"
+
+namespace delassus {
+namespace {
+
+std::size_t z(Index i) { return static_cast<std::size_t>(i); }
+
+JointType joint_type(const Yaml& y) {
+  const std::string accepted = "revolute, prismatic, spherical, universal, cylindrical, planar, floating";
+  const std::string text = y.text(accepted);
+  for (const JointType t : {JointType::revolute, JointType::prismatic, JointType::universal, JointType::planar,
+                            JointType::spherical, JointType::floating, JointType::cylindrical})
+    if (text == name(t)) return t;
+  y.fail(in_quotes(text) + " is no joint type", accepted);
+}
+
+UrdfOptions::Base base_of(const Yaml& y) {
+  const std::string accepted = "fixed, free, planar", text = y.text(accepted);
+  if (text == "fixed") return UrdfOptions::Base::fixed;
+  if (text == "free") return UrdfOptions::Base::free;
+  if (text == "planar") return UrdfOptions::Base::planar;
+  y.fail(in_quotes(text) + " is no base", accepted);
+}
+
+/// Solid box of uniform density.
+Body box_body(double mass, const Vector3<double>& size) {
+  Body b;
+  b.mass = mass;
+  const Vector3<double> s = size.cwiseAbs2() * (mass / 12);
+  b.inertia.diagonal() << s[1] + s[2], s[0] + s[2], s[0] + s[1];
+  b.joint.type = JointType::floating;
+  b.shapes.push_back({Shape::Kind::box, size / 2, {}, -1});
+  return b;
+}
+
+}  // namespace
+
+std::string SceneLoader::new_name(const Yaml& y) {
+  const std::string accepted = "a name without '/', not world or ground", text = y.text(accepted);
+  if (text.find('/') != std::string::npos || text == "world" || text == "ground") y.fail(in_quotes(text) + " cannot be a name", accepted);
+  bool taken = scene_.frames.count(text) > 0;
+  for (const UrdfRobot& r : robots_) taken = taken || r.name == text;
+  if (taken) y.fail("the name " + in_quotes(text) + " is taken", "unique names of robots and boxes");
+  return text;
+}
+
+UrdfOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) const {
+  UrdfOptions o;
+  o.robot = name;
+  const Yaml urdf = y.at("urdf");
+  std::filesystem::path file = urdf.text("path of a URDF file");
+  if (file.is_relative()) file = std::filesystem::path(path_).parent_path() / file;
+  o.file = file.lexically_normal().string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) urdf.fail("the file " + in_quotes(o.file) + " cannot be read", "path of a URDF file, relative to the scene file");
+  if (y.has("base")) o.base = base_of(y.at("base"));
+  if (y.has("pose")) o.pose = y.at("pose").pose();
+  if (y.has("joint_types"))
+    for (const auto& [joint, value] : y.at("joint_types").entries()) {
+      UrdfOptions::Type type;
+      if (value.is_map()) value.keys({"type", "axis2"});
+      type.type = joint_type(value.is_map() ? value.at("type") : value);
+      if (value.is_map() && value.has("axis2")) type.axis2 = value.at("axis2").direction();
+      o.joint_types.emplace(joint, type);
+    }
+  if (y.has("armature"))
+    for (const auto& [joint, value] : y.at("armature").entries()) o.armature.emplace(joint, value.non_negative(" [kg m^2 or kg]"));
+  return o;
+}
+
+/// Neutral configuration for the bodies added since.
+void SceneLoader::grow_q() {
+  const Index old = scene_.q.size();
+  scene_.q.conservativeResize(scene_.model.q_size());
+  for (Index k = old; k < scene_.q.size(); ++k) scene_.q[k] = 0;
+  for (std::size_t i = object_.size(); i < scene_.model.bodies.size(); ++i) {
+    const JointType t = scene_.model.bodies[i].joint.type;
+    if (t == JointType::spherical) scene_.q[scene_.model.first_q[i]] = 1;
+    if (t == JointType::floating) scene_.q[scene_.model.first_q[i] + 3] = 1;
+    object_.push_back(objects_);
+  }
+  ++objects_;
+}
+
+void SceneLoader::set_pose(Index body, const Pose<double>& pose) {
+  const Index k = scene_.model.first_q[z(body)];
+  const Eigen::Quaterniond r(pose.rotation);
+  scene_.q.segment<7>(k) << pose.translation, r.w(), r.x(), r.y(), r.z();
+}
+
+void SceneLoader::set_joints(const UrdfRobot& robot, const Yaml& joints) {
+  for (const auto& [joint, value] : joints.entries()) {
+    const auto it = robot.joints.find(joint);
+    if (it == robot.joints.end()) value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", "a joint of the URDF that is not fixed");
+    for (const UrdfRobot::Mimic& m : robot.mimics)
+      if (m.body == it->second) value.fail("the joint follows another one", "no value for a mimic joint");
+    const Index k = scene_.model.first_q[z(it->second)], n = q_size(scene_.model.bodies[z(it->second)].joint.type);
+    const std::string accepted = std::to_string(n) + " numbers [rad or m; quaternions w x y z]";
+    std::vector<double> v = value.is_list() ? value.numbers(" [rad or m]") : std::vector<double>{value.number(" [rad or m]")};
+    if (static_cast<Index>(v.size()) != n) value.fail("has " + std::to_string(v.size()) + " entries", accepted);
+    for (Index i = 0; i < n; ++i) scene_.q[k + i] = v[z(i)];
+    if (n != 4 && n != 7) continue;
+    auto quaternion = scene_.q.segment<4>(k + n - 4);
+    if (quaternion.stableNorm() == 0) value.fail("the quaternion is zero", accepted);
+    quaternion.stableNormalize();
+  }
+}
+
+/// q_mimic = multiplier q_master + offset, along chains of mimics.
+void SceneLoader::set_mimics(const UrdfRobot& robot) {
+  std::map<Index, const UrdfRobot::Mimic*> by_body;
+  for (const UrdfRobot::Mimic& m : robot.mimics) by_body.emplace(m.body, &m);
+  for (const UrdfRobot::Mimic& m : robot.mimics) {
+    double factor = m.multiplier, offset = m.offset;
+    Index master = m.master;
+    std::size_t steps = 0;
+    for (auto it = by_body.find(master); it != by_body.end(); it = by_body.find(master)) {
+      if (++steps > robot.mimics.size())
+        throw ModelError(path_, "robot " + in_quotes(robot.name), "mimic joints follow each other in a circle", "a chain of mimics that ends");
+      offset += factor * it->second->offset, factor *= it->second->multiplier, master = it->second->master;
+    }
+    scene_.q[scene_.model.first_q[z(m.body)]] = factor * scene_.q[scene_.model.first_q[z(master)]] + offset;
+  }
+}
+
+void SceneLoader::read_robot(const Yaml& y) {
+  y.keys({"name", "urdf", "base", "pose", "joints", "joint_types", "armature"});
+  const UrdfOptions options = urdf_options(y, new_name(y.at("name")));
+  const std::size_t before = scene_.model.constraints.size();
+  UrdfRobot robot = add_urdf(scene_.model, options);
+  own_damping_.resize(own_damping_.size() + scene_.model.constraints.size() - before);
+  const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
+  grow_q();
+  if (options.base == UrdfOptions::Base::free) set_pose(root, options.pose);
+  if (y.has("joints")) set_joints(robot, y.at("joints"));
+  set_mimics(robot);
+  for (const auto& [link, frame] : robot.links) scene_.frames.emplace(robot.name + "/" + link, frame);
+  scene_.notes.insert(scene_.notes.end(), robot.notes.begin(), robot.notes.end());
+  robots_.push_back(std::move(robot));
+}
+
+void SceneLoader::read_box(const Yaml& y) {
+  y.keys({"name", "mass", "size", "pose", "friction"});
+  const std::string name = new_name(y.at("name"));
+  const double mass = y.at("mass").positive(" [kg]");
+  const Vector3<double> size = y.at("size").vector3(" > 0 [m]");
+  if (!(size.minCoeff() > 0)) y.at("size").fail("an edge is not positive", "3 full edge lengths > 0 [m]");
+  Body body = box_body(mass, size);
+  body.name = name;
+  body.joint.name = name + "/base";
+  if (y.has("friction")) body.shapes[0].friction = y.at("friction").non_negative("");
+  const Index i = scene_.model.add(std::move(body));
+  grow_q();
+  set_pose(i, y.has("pose") ? y.at("pose").pose() : Pose<double>{});
+  scene_.frames.emplace(name, Frame{i, {}});
+}
+
+}  // namespace delassus

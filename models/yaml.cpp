@@ -1,0 +1,156 @@
+#include "models/yaml.h"
+
+#include <filesystem>
+#include <set>
+
+#include "models/message.h"
+#include "models/urdf.h"
+
+namespace delassus {
+
+Yaml Yaml::open(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) throw ModelError(file, "file", "cannot be read", "a scene file (.yaml)");
+  try {
+    const Yaml root(file, "", YAML::LoadFile(file), 1);
+    if (!root.is_map()) root.fail("the file holds no mapping", "keys of a scene: robots, boxes, ...");
+    return root;
+  } catch (const YAML::BadFile&) {
+    throw ModelError(file, "file", "cannot be read", "a scene file (.yaml)");
+  } catch (const YAML::Exception& e) {
+    throw ModelError(file + ":" + std::to_string(e.mark.line + 1), "YAML", "broken: " + e.msg.substr(0, 200), "well-formed YAML");
+  }
+}
+
+void Yaml::fail(const std::string& problem, const std::string& accepted) const {
+  throw ModelError(file_ + ":" + std::to_string(line_), path_.empty() ? "scene" : path_, problem, accepted);
+}
+
+Yaml Yaml::child(const std::string& key, const YAML::Node& node) const {
+  const int line = node.Mark().line >= 0 ? node.Mark().line + 1 : line_;
+  return {file_, path_.empty() ? key : path_ + "." + key, node, line};
+}
+
+std::vector<std::pair<std::string, Yaml>> Yaml::entries() const {
+  if (!node_.IsMap()) fail("is no mapping", "{key: value, ...}");
+  std::vector<std::pair<std::string, Yaml>> out;
+  std::set<std::string> seen;
+  for (const auto& pair : node_) {
+    const YAML::Node key = pair.first;
+    if (!key.IsScalar()) fail("a key is no text", "{key: value, ...}");
+    const std::string name = key.Scalar();
+    std::string shown = in_quotes(name);
+    if (shown.size() == name.size() + 2) shown = name;
+    Yaml value = child(shown, pair.second);
+    if (!seen.insert(name).second) value.fail("the key appears twice", "each key once");
+    out.emplace_back(name, std::move(value));
+  }
+  return out;
+}
+
+void Yaml::keys(std::initializer_list<const char*> accepted) const {
+  std::string all;
+  for (const char* k : accepted) all += (all.empty() ? "" : ", ") + std::string(k);
+  if (!node_.IsMap()) fail("is no mapping", "a mapping with the keys " + all);
+  for (const auto& [name, value] : entries()) {
+    bool known = false;
+    for (const char* k : accepted) known = known || name == k;
+    if (!known) value.fail("unknown key", all);
+  }
+}
+
+bool Yaml::has(const char* key) const { return node_.IsMap() && node_[key].IsDefined(); }
+
+Yaml Yaml::at(const char* key) const {
+  if (!has(key)) fail("key " + std::string(key) + " is missing", std::string(key) + ": ...");
+  return child(key, node_[key]);
+}
+
+std::vector<Yaml> Yaml::list(const std::string& accepted) const {
+  if (!node_.IsSequence()) fail("is no list", accepted);
+  std::vector<Yaml> out;
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    Yaml item = child("", node_[i]);
+    item.path_ = path_ + "[" + std::to_string(i) + "]";
+    out.push_back(std::move(item));
+  }
+  return out;
+}
+
+double Yaml::number(const std::string& unit) const {
+  const std::string accepted = "a finite number" + unit;
+  if (!node_.IsScalar()) fail("is no number", accepted);
+  const auto value = finite_number(node_.Scalar());
+  if (!value) fail(in_quotes(node_.Scalar()) + " is no finite number", accepted);
+  return *value;
+}
+
+double Yaml::non_negative(const std::string& unit) const {
+  const double x = number(" >= 0" + unit);
+  if (x < 0) fail(in_quotes(node_.Scalar()) + " is negative", "a number >= 0" + unit);
+  return x;
+}
+
+double Yaml::positive(const std::string& unit) const {
+  const double x = number(" > 0" + unit);
+  if (!(x > 0)) fail(in_quotes(node_.Scalar()) + " is not positive", "a number > 0" + unit);
+  return x;
+}
+
+Index Yaml::index() const {
+  const double x = number(" (whole, >= 0)");
+  if (x < 0 || x != std::floor(x) || x > 1e15) fail(in_quotes(node_.Scalar()) + " is no index", "a whole number >= 0");
+  return static_cast<Index>(x);
+}
+
+bool Yaml::boolean() const {
+  if (node_.IsScalar() && node_.Scalar() == "true") return true;
+  if (node_.IsScalar() && node_.Scalar() == "false") return false;
+  fail("is neither true nor false", "true, false");
+}
+
+std::string Yaml::text(const std::string& accepted) const {
+  if (!node_.IsScalar() || node_.Scalar().empty()) fail("is no text", accepted);
+  return node_.Scalar();
+}
+
+std::vector<double> Yaml::numbers(const std::string& unit) const {
+  std::vector<double> out;
+  for (const Yaml& item : list("a list of numbers" + unit)) out.push_back(item.number(unit));
+  return out;
+}
+
+Vector3<double> Yaml::vector3(const std::string& unit) const {
+  const std::vector<double> v = numbers(unit);
+  if (v.size() != 3) fail("has " + std::to_string(v.size()) + " entries", "3 numbers" + unit);
+  return {v[0], v[1], v[2]};
+}
+
+Vector3<double> Yaml::direction() const {
+  const Vector3<double> v = vector3("");
+  if (v.stableNorm() == 0) fail("has no direction", "3 numbers, not all 0");
+  return v.stableNormalized();
+}
+
+MatrixX<double> Yaml::matrix(Index rows, Index columns, const std::string& unit) const {
+  const std::string accepted = "a list of " + (rows < 0 ? std::string("1 to 6") : std::to_string(rows)) + " rows of " + std::to_string(columns) + " numbers" + unit;
+  const std::vector<Yaml> items = list(accepted);
+  if (items.empty() || (rows >= 0 && static_cast<Index>(items.size()) != rows)) fail("has " + std::to_string(items.size()) + " rows", accepted);
+  MatrixX<double> out(static_cast<Index>(items.size()), columns);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::vector<double> v = items[i].numbers(unit);
+    if (static_cast<Index>(v.size()) != columns) items[i].fail("has " + std::to_string(v.size()) + " entries", accepted);
+    for (Index j = 0; j < columns; ++j) out(static_cast<Index>(i), j) = v[static_cast<std::size_t>(j)];
+  }
+  return out;
+}
+
+Pose<double> Yaml::pose() const {
+  keys({"xyz", "rpy"});
+  Pose<double> out;
+  if (has("xyz")) out.translation = at("xyz").vector3(" [m]");
+  if (has("rpy")) out.rotation = rotation_rpy(at("rpy").vector3(" [rad]"));
+  return out;
+}
+
+}  // namespace delassus
