@@ -40,6 +40,7 @@ class Factor {
   /// Returns the number of non-zeros of L.
   double analyse() {
     const std::size_t n = order_.size();
+    if (n == 0) return 0;
     cholmod_triplet* t = cholmod_allocate_triplet(n, n, entries_.size(), -1, CHOLMOD_REAL, &common_);
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       static_cast<int*>(t->i)[k] = static_cast<int>(entries_[k].row);

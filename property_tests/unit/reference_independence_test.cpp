@@ -1,0 +1,47 @@
+// The references share no code with the operators: following every #include "…" from reference/ reaches nothing but
+// reference/ and the six headers that say what a problem is.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string> allowed{"algorithms/problem.h",    "algorithms/spatial.h", "algorithms/kinematics.h",
+                                    "algorithms/model.h",      "algorithms/scalars.h", "algorithms/status.h"};
+
+fs::path root() { return fs::absolute(__FILE__).parent_path().parent_path().parent_path(); }
+
+std::vector<std::string> quoted_includes(const fs::path& file) {
+  std::vector<std::string> found;
+  std::ifstream in(file);
+  const std::string marker = "#include \"";
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(marker, 0) == 0) found.push_back(line.substr(marker.size(), line.rfind('"') - marker.size()));
+  return found;
+}
+
+TEST(ReferenceIndependence, IncludesNoOperatorHeader) {
+  ASSERT_TRUE(fs::exists(root() / "reference"));
+  std::vector<std::string> pending;
+  for (const auto& entry : fs::directory_iterator(root() / "reference"))
+    if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
+      pending.push_back("reference/" + entry.path().filename().string());
+  ASSERT_GT(pending.size(), 5u);
+  std::set<std::string> seen;
+  while (!pending.empty()) {
+    const std::string file = pending.back();
+    pending.pop_back();
+    if (!seen.insert(file).second) continue;
+    EXPECT_TRUE(file.rfind("reference/", 0) == 0 || allowed.count(file) == 1) << file << " is reached from reference/";
+    for (const std::string& next : quoted_includes(root() / file)) pending.push_back(next);
+  }
+  EXPECT_EQ(seen.count("algorithms/delassus.h"), 0u);
+}
+
+}  // namespace
