@@ -2,6 +2,7 @@
 #include "reference/kkt_cholmod.h"
 #include "reference/maximal.h"
 #include "reference/reference.h"
+#include "reference/zeros.h"
 
 namespace delassus::reference {
 
@@ -26,8 +27,27 @@ bool maximal_trusts(P p, D) {
   const Structure& s = *p.structure;
   return 12 * s.bodies() + s.dofs() + s.rows <= 600;
 }
-MatrixX<Quad> maximal_row_apply(P p, D d, X f) { return maximal_apply(p.cast<Quad>(), d.cast<Quad>(), quad(f)); }
-MatrixX<Quad> maximal_row_solve(P p, D d, X a) { return maximal_solve(p.cast<Quad>(), d.cast<Quad>(), quad(a)); }
+MatrixX<Quad> maximal_row_apply(P p, D d, X f) {
+  MatrixX<Quad> a = maximal_apply(p.cast<Quad>(), d.cast<Quad>(), quad(f));
+  Zeros(p, d).clear_apply(f, a);
+  return a;
+}
+MatrixX<Quad> maximal_row_solve(P p, D d, X a) {
+  MatrixX<Quad> f = maximal_solve(p.cast<Quad>(), d.cast<Quad>(), quad(a));
+  Zeros(p, d).clear_solve(a, f);
+  return f;
+}
+
+MatrixX<Quad> cholmod_row_apply(P p, D d, X f) {
+  MatrixX<Quad> a = kkt_cholmod_apply(p, d, f);
+  Zeros(p, d).clear_apply(f, a);
+  return a;
+}
+MatrixX<Quad> cholmod_row_solve(P p, D d, X a) {
+  MatrixX<Quad> f = kkt_cholmod_solve(p, d, a);
+  Zeros(p, d).clear_solve(a, f);
+  return f;
+}
 
 }  // namespace
 
@@ -41,7 +61,7 @@ const std::vector<ReferenceRow>& references() {
        unit_roundoff<Quad>, maximal_trusts, maximal_row_apply, maximal_row_solve},
       {"kkt_cholmod", "the maximal-coordinate system, sparse: CHOLMOD's LDLᵀ in double, refined with residuals in Quad",
        "10⁴ bodies and more; not with massless bodies, redundant undamped rows, or a fill above 5·10⁷",
-       unit_roundoff<double>, kkt_cholmod_trusts, kkt_cholmod_apply, kkt_cholmod_solve},
+       unit_roundoff<double>, kkt_cholmod_trusts, cholmod_row_apply, cholmod_row_solve},
   };
   return table;
 }

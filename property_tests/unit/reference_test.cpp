@@ -405,6 +405,38 @@ TEST(Sensitivity, DirectFormulaIsAmplified) {
   EXPECT_GT(beyond_data, 30);
 }
 
+// ---- zeros -----------------------------------------------------------------------------------------------------
+
+/// A planar pair of links with inertias that are not planar: rows out of the plane are exact zeros everywhere.
+TEST(Reference, UnreachedRowsAreExactZeros) {
+  auto s = std::make_shared<Structure>();
+  s->add_body(ground, 1);
+  s->add_body(0, 1);
+  s->add_link_constraint(3, {1});
+  s->add_joint_constraint(1, 0);
+  Problem<double> p(s);
+  p.S[0] = rotation_axis<double>({0, 0, 1}, {0, 0, 0});
+  p.S[1] = rotation_axis<double>({0, 0, 1}, {1, 0.5, 0});
+  for (Index i = 0; i < 2; ++i) p.H[i] = spatial_inertia<double>(2, {0.75, 0.25, 0.375}, Matrix3<double>::Identity());
+  for (Index r = 0; r < 3; ++r) {  // the acceleration of the point (3; 1; 0) along x, y, z
+    const Vector3<double> axis = Vector3<double>::Unit(r);
+    p.K[r] << Vector3<double>(3, 1, 0).cross(axis), axis;
+  }
+  p.joint_K[0] = 1;
+  auto damping = Damping<double>::uniform(4, 0);
+  const Matrix x = (Matrix(4, 2) << 1, 0, 3, 0, 0, 0, 2, 0).finished();
+  const Sensitivity bounds(p, damping);
+  EXPECT_EQ(bounds.apply_sensitivity(x.col(0))[2], 0);
+  damping.diagonal = {0.5, 0.5, 0.5, 0.5};
+  for (const auto& reference : references()) {
+    for (const MatrixX<Quad>& y : {reference.apply(p, damping, x), reference.solve(p, damping, x)}) {
+      EXPECT_TRUE(y(2, 0) == Quad(0)) << reference.name;
+      for (const Index r : {0, 1, 3}) EXPECT_FALSE(y(r, 0) == Quad(0)) << reference.name;
+      for (Index r = 0; r < 4; ++r) EXPECT_TRUE(y(r, 1) == Quad(0)) << reference.name;
+    }
+  }
+}
+
 // ---- size ------------------------------------------------------------------------------------------------------
 
 /// 10⁴ bodies: a tree of depth about 14, every joint of one degree of freedom, three damped rows on every tenth body
