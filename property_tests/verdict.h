@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "algorithms/scalars.h"
+#include "algorithms/spatial.h"
 
 namespace delassus::laws {
 

@@ -1,0 +1,139 @@
+#include "property_tests/known.h"
+
+#include "reference/reference.h"
+
+namespace delassus::laws {
+namespace {
+
+constexpr Index most_dofs = 250, most_rows_apply = 1000, most_rows_solve = 400;
+
+/// nullptr when M is singular or the case too large.
+reference::Sensitivity* sensitivity(const Case& c) {
+  Known& known = *c.known;
+  const Structure& s = *c.problem.structure;
+  if (!known.tried && s.dofs() <= most_dofs && s.rows <= most_rows_apply) {
+    try {
+      known.sensitivity.emplace(c.problem, c.damping);
+    } catch (const std::runtime_error& e) {
+      known.no_sensitivity = e.what();
+    }
+  }
+  known.tried = true;
+  return known.sensitivity ? &*known.sensitivity : nullptr;
+}
+
+const MatrixX<Quad>& quad_definition(Function f, const Case& c) {
+  Known& known = *c.known;
+  reference::Sensitivity* s = sensitivity(c);
+  if (!s) throw std::runtime_error("no definition: " + known.no_sensitivity);
+  if (!known.A) known.A = s->matrices().A();
+  if (f == Function::solve && !known.A_inverse) known.A_inverse = reference::dense_damped_inverse(s->matrices());
+  return f == Function::apply ? *known.A : *known.A_inverse;
+}
+
+const MatrixX<Rational>& exact_definition(Function f, const Case& c) {
+  Known& known = *c.known;
+  if (!known.exact) {
+    known.exact = reference::dense(c.problem.cast<Rational>(), c.damping.cast<Rational>());
+    known.exact_A = known.exact->A();
+  }
+  if (f == Function::solve && !known.exact_inverse) known.exact_inverse = reference::dense_damped_inverse(*known.exact);
+  return f == Function::apply ? *known.exact_A : *known.exact_inverse;
+}
+
+}  // namespace
+
+const char* why_no_bound(Function f, const Case& c) {
+  const Structure& s = *c.problem.structure;
+  if (s.dofs() > most_dofs || s.rows > most_rows_apply) return "too large for the dense bounds (250 dofs, 1000 rows)";
+  if (f == Function::solve && s.rows > most_rows_solve) return "too large for the dense bounds of solve (400 rows)";
+  if (!sensitivity(c)) return "M is singular";
+  if (f == Function::solve && !sensitivity(c)->regular()) return "A is singular";
+  return nullptr;
+}
+
+bool damped(const Case& c) {
+  Known& known = *c.known;
+  if (known.damped) return *known.damped;
+  std::vector<bool> in_block(static_cast<std::size_t>(c.rows()), false);
+  bool positive = true;
+  for (const auto& b : c.damping.blocks) {
+    positive = positive && reference::PivotedLdlt<Quad>(converted<Quad>(b.R_inverse)).regular();
+    for (Index r = 0; r < b.R_inverse.rows(); ++r) in_block[static_cast<std::size_t>(b.row + r)] = true;
+  }
+  for (std::size_t r = 0; r < in_block.size(); ++r) positive = positive && (in_block[r] || c.damping.diagonal[r] > 0);
+  known.damped = positive;
+  return positive;
+}
+
+template <> const MatrixX<Quad>& definition<double>(Function f, const Case& c) { return quad_definition(f, c); }
+template <> const MatrixX<Rational>& definition<Rational>(Function f, const Case& c) { return exact_definition(f, c); }
+
+MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x) {
+  const reference::Sensitivity& s = *sensitivity(c);
+  MatrixX<Quad> bound(x.rows(), x.cols());
+  for (Index k = 0; k < x.cols(); ++k) {
+    const VectorX<double> a = x.col(k);
+    VectorX<double> b;
+    if (f == Function::apply) {
+      b = s.apply_sensitivity(a);
+    } else {
+      VectorX<double> lambda(a.size());
+      const MatrixX<Quad> exact = reference::product<Quad>(quad_definition(f, c), converted<Quad>(MatrixX<double>(a)));
+      for (Index r = 0; r < a.size(); ++r) lambda[r] = static_cast<double>(exact(r, 0));
+      b = s.solve_sensitivity(a, lambda);
+      if (op.solve_error == ErrorClass::normwise) b = s.solve_normwise(a, lambda);
+      if (op.solve_error == ErrorClass::amplified) b += s.solve_amplified(a);
+    }
+    for (Index r = 0; r < b.size(); ++r) bound(r, k) = Quad(b[r]);
+  }
+  return bound;
+}
+
+std::string_view bound_name(Function f, const OperatorRow& op) {
+  if (f == Function::apply) return "apply_sensitivity";
+  switch (op.solve_error) {
+    case ErrorClass::componentwise: return "solve_sensitivity";
+    case ErrorClass::normwise: return "solve_normwise";
+    case ErrorClass::amplified: return "solve_amplified + solve_sensitivity";
+  }
+  return "solve_sensitivity";
+}
+
+const Case& variant(const Case& c, const std::string& name, const std::function<Variant<double>(const Case&)>& make) {
+  auto& all = c.known->variants;
+  auto at = all.find(name);
+  if (at == all.end()) {
+    Variant<double> v = make(c);
+    at = all.emplace(name, make_case(std::move(v.problem), std::move(v.damping), c.label + ", " + name, c.seed)).first;
+  }
+  return at->second;
+}
+
+const std::optional<MatrixX<Quad>>& answer(Function f, std::string_view reference, const Case& c,
+                                           const MatrixX<double>& x) {
+  const std::string key = std::string(reference) + (f == Function::apply ? " apply" : " solve");
+  auto [at, is_new] = c.known->answers.try_emplace(key);
+  if (!is_new) return at->second;
+  for (const reference::ReferenceRow& row : reference::references()) {
+    if (row.name != reference || !row.trusts(c.problem, c.damping)) continue;
+    try {
+      at->second = f == Function::apply ? row.apply(c.problem, c.damping, x) : row.solve(c.problem, c.damping, x);
+    } catch (const std::runtime_error&) {  // it reports that it cannot be trusted here
+    }
+  }
+  return at->second;
+}
+
+template <class T> MatrixX<Wide<T>> damping_of(const Structure& s, const Damping<T>& d) {
+  MatrixX<Wide<T>> out = MatrixX<Wide<T>>::Zero(s.rows, s.rows);
+  for (Index r = 0; r < s.rows; ++r) out(r, r) = scalar_cast<Wide<T>>(d.diagonal[static_cast<std::size_t>(r)]);
+  for (const auto& b : d.blocks)
+    for (Index i = 0; i < b.R_inverse.rows(); ++i)
+      for (Index j = 0; j < b.R_inverse.cols(); ++j) out(b.row + i, b.row + j) = scalar_cast<Wide<T>>(b.R_inverse(i, j));
+  return out;
+}
+template MatrixX<Quad> damping_of<double>(const Structure&, const Damping<double>&);
+template MatrixX<Rational> damping_of<Rational>(const Structure&, const Damping<Rational>&);
+
+}  // namespace delassus::laws

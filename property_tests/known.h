@@ -1,0 +1,62 @@
+// What the references say about a case: computed once, when first asked for, and shared by every operator and law.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "property_tests/laws.h"
+#include "property_tests/variants.h"
+#include "reference/sensitivity.h"
+
+namespace delassus::laws {
+
+/// Apply or solve.
+enum class Function : std::uint8_t { apply, solve };
+
+/// What the errors of a scalar are computed in.
+template <class T> using Wide = std::conditional_t<ScalarTraits<T>::exact, T, Quad>;
+
+template <class To, class From> [[nodiscard]] MatrixX<To> converted(const MatrixX<From>& x) {
+  MatrixX<To> y(x.rows(), x.cols());
+  for (Index c = 0; c < x.cols(); ++c)
+    for (Index r = 0; r < x.rows(); ++r) y(r, c) = scalar_cast<To>(x(r, c));
+  return y;
+}
+
+struct Known {
+  bool tried = false;
+  std::optional<reference::Sensitivity> sensitivity;
+  std::string no_sensitivity;
+  std::optional<MatrixX<Quad>> A, A_inverse;
+  std::optional<bool> damped;
+  std::optional<reference::Dense<Rational>> exact;
+  std::optional<MatrixX<Rational>> exact_A, exact_inverse;
+  std::map<std::string, Case> variants;
+  std::map<std::string, std::optional<MatrixX<Quad>>> answers;  ///< of references, by name and question
+};
+
+/// Reason why there is no bound for this function on this case (size, M or A singular); nullptr: there is one.
+[[nodiscard]] const char* why_no_bound(Function f, const Case& c);
+/// Every row has R⁻¹ > 0 (blocks positive definite).
+[[nodiscard]] bool damped(const Case& c);
+/// A and A⁻¹ by the definition in Quad or Rational. Shapes m×m. @throws std::runtime_error when singular.
+template <class T> [[nodiscard]] const MatrixX<Wide<T>>& definition(Function f, const Case& c);
+/// Bound on the error of f(x) by an operator of this row, per unit roundoff. Shapes m×k.
+[[nodiscard]] MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x);
+/// The name of that bound.
+[[nodiscard]] std::string_view bound_name(Function f, const OperatorRow& op);
+
+/// Another case that follows from this one; made once.
+[[nodiscard]] const Case& variant(const Case& c, const std::string& name,
+                                  const std::function<Variant<double>(const Case&)>& make);
+/// Answer of a reference for the vectors `x` (the same ones at every call with this name); nullopt: it does not trust
+/// itself here.
+[[nodiscard]] const std::optional<MatrixX<Quad>>& answer(Function f, std::string_view reference, const Case& c,
+                                                        const MatrixX<double>& x);
+/// R⁻¹ as m×m matrix.
+template <class T> [[nodiscard]] MatrixX<Wide<T>> damping_of(const Structure& s, const Damping<T>& d);
+
+}  // namespace delassus::laws

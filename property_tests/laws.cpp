@@ -1,0 +1,133 @@
+#include "property_tests/laws.h"
+
+#include "generators/build.h"
+#include "property_tests/laws_conduct.h"
+#include "property_tests/laws_routes.h"
+
+namespace delassus::laws {
+namespace {
+
+constexpr Function apply = Function::apply, solve = Function::solve;
+constexpr const char* of_apply = "apply_sensitivity";
+constexpr const char* of_solve = "by error class: solve_sensitivity, solve_normwise, solve_amplified";
+using X = Rational;
+
+constexpr auto can_apply = why_not_function<double, apply>;
+constexpr auto can_solve = why_not_function<double, solve>;
+constexpr auto can_apply_exactly = why_not_function<X, apply>;
+constexpr auto can_solve_exactly = why_not_function<X, solve>;
+
+}  // namespace
+
+const std::vector<LawRow>& laws() {
+  static const std::vector<LawRow> table{
+      {"apply symmetric", "xᵀ(A y) = (A x)ᵀ y", of_apply, can_apply, symmetric<double, apply>},
+      {"solve symmetric", "xᵀ(A⁻¹ y) = (A⁻¹ x)ᵀ y", of_solve, can_solve, symmetric<double, solve>},
+      {"apply positive", "0 ≤ xᵀ A x", of_apply, can_apply, positive<double, apply>},
+      {"solve positive", "(A⁻¹x)ᵀ R⁻¹ (A⁻¹x) ≤ xᵀ A⁻¹ x", of_solve, can_solve, positive<double, solve>},
+      {"apply linear", "A(2x − 3y) = 2 A x − 3 A y", of_apply, can_apply, linear<double, apply>},
+      {"solve linear", "A⁻¹(2x − 3y) = 2 A⁻¹ x − 3 A⁻¹ y", of_solve, can_solve, linear<double, solve>},
+      {"columns = definition", "A e_j = J M⁻¹ Jᵀ e_j + R⁻¹ e_j", of_apply, can_apply, is_definition<double, apply>},
+      {"damped inverse = definition", "Λ_R e_j = (J M⁻¹ Jᵀ + R⁻¹)⁻¹ e_j", of_solve, can_solve, is_definition<double, solve>},
+      {"apply = maximal", "A x = every joint a constraint", of_apply, why_not_witness<apply, Witness::maximal>,
+       witnessed<apply, Witness::maximal>},
+      {"damped inverse = maximal", "Λ_R x = every joint a constraint", of_solve, why_not_witness<solve, Witness::maximal>,
+       witnessed<solve, Witness::maximal>},
+      {"apply = kkt", "A x = the sparse system by CHOLMOD", "apply_sensitivity + largest entry",
+       why_not_witness<apply, Witness::kkt>, witnessed<apply, Witness::kkt>},
+      {"damped inverse = kkt", "Λ_R x = the sparse system by CHOLMOD", "by error class + largest entry",
+       why_not_witness<solve, Witness::kkt>, witnessed<solve, Witness::kkt>},
+      {"round trip", "A⁻¹ (A x) = x", of_solve, why_not_both<double>, round_trip<double>},
+      {"resolvent", "V_R(a + (R⁻¹ − R'⁻¹) V_R' a) = V_R' a", of_solve, can_solve, resolvent<double>},
+      {"apply relabelled", "A x = A x with bodies renumbered", of_apply, can_apply, relabelling<double, apply>},
+      {"solve relabelled", "A⁻¹ x = A⁻¹ x with bodies renumbered", of_solve, can_solve, relabelling<double, solve>},
+      {"apply joint row = link rows", "𝒦_i = (𝒦_i S⁺, −𝒦_i S⁺) on (i, π(i))", of_apply, why_not_joint_rows<double, apply>,
+       joint_rows<double, apply>},
+      {"solve joint row = link rows", "𝒦_i = (𝒦_i S⁺, −𝒦_i S⁺) on (i, π(i))", of_solve, why_not_joint_rows<double, solve>,
+       joint_rows<double, solve>},
+      {"armature = joint row", "armature A_i = rows 1 on joint i with R = A_i, a = 0", of_solve, why_not_armature<double>,
+       armature<double>},
+      {"apply multi-column", "A [x y …] = [A x, A y, …]", of_apply, can_apply, multi_column<apply>},
+      {"solve multi-column", "A⁻¹ [x y …] = [A⁻¹ x, A⁻¹ y, …]", of_solve, can_solve, multi_column<solve>},
+      {"apply after update twice", "second update = fresh operator", "identical bits", can_apply, update_twice<apply>},
+      {"solve after update twice", "second update = fresh operator", "identical bits", can_solve, update_twice<solve>},
+      {"apply after update_damping", "update_damping = update", of_apply, can_apply, damping_update<apply>},
+      {"solve after update_damping", "update_damping = update", of_solve, can_solve, damping_update<solve>},
+      {"no allocation", "allocations after analyze = 0", "zero", why_not_allocation, no_allocation},
+      {"apply with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_apply, poisoned_workspace<apply>},
+      {"solve with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_solve, poisoned_workspace<solve>},
+      {"empty sizes", "no rows or no columns: ok", "zero", why_not_zero_columns, empty_sizes},
+      {"zero damping", "R⁻¹ = 0: solved, or refused by row", of_solve, why_not_zero_damping, zero_damping},
+      {"apply keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", can_apply, nan_stays<apply>},
+      {"solve keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", can_solve, nan_stays<solve>},
+      // Exact twins: the same in rational numbers, by equality.
+      {"exact apply symmetric", "xᵀ(A y) = (A x)ᵀ y", "equality", can_apply_exactly, symmetric<X, apply>},
+      {"exact solve symmetric", "xᵀ(A⁻¹ y) = (A⁻¹ x)ᵀ y", "equality", can_solve_exactly, symmetric<X, solve>},
+      {"exact apply positive", "0 ≤ xᵀ A x", "equality", can_apply_exactly, positive<X, apply>},
+      {"exact solve positive", "(A⁻¹x)ᵀ R⁻¹ (A⁻¹x) ≤ xᵀ A⁻¹ x", "equality", can_solve_exactly, positive<X, solve>},
+      {"exact columns = definition", "A e_j = J M⁻¹ Jᵀ e_j + R⁻¹ e_j", "equality", can_apply_exactly,
+       is_definition<X, apply>},
+      {"exact damped inverse = definition", "Λ_R e_j = (J M⁻¹ Jᵀ + R⁻¹)⁻¹ e_j", "equality", can_solve_exactly,
+       is_definition<X, solve>},
+      {"exact round trip", "A⁻¹ (A x) = x", "equality", why_not_both<X>, round_trip<X>},
+      {"exact resolvent", "V_R(a + (R⁻¹ − R'⁻¹) V_R' a) = V_R' a", "equality", can_solve_exactly, resolvent<X>},
+      {"exact apply relabelled", "A x = A x with bodies renumbered", "equality", can_apply_exactly, relabelling<X, apply>},
+      {"exact solve relabelled", "A⁻¹ x = A⁻¹ x with bodies renumbered", "equality", can_solve_exactly,
+       relabelling<X, solve>},
+      {"exact apply joint row = link rows", "𝒦_i = (𝒦_i S⁺, −𝒦_i S⁺) on (i, π(i))", "equality",
+       why_not_joint_rows<X, apply>, joint_rows<X, apply>},
+      {"exact solve joint row = link rows", "𝒦_i = (𝒦_i S⁺, −𝒦_i S⁺) on (i, π(i))", "equality",
+       why_not_joint_rows<X, solve>, joint_rows<X, solve>},
+      {"exact armature = joint row", "armature A_i = rows 1 on joint i with R = A_i, a = 0", "equality",
+       why_not_armature<X>, armature<X>},
+  };
+  return table;
+}
+
+const LawRow& find_law(std::string_view name) {
+  std::string accepted;
+  for (const LawRow& row : laws()) {
+    if (row.name == name) return row;
+    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw ModelError("command line", "law", "there is no law " + std::string(name), accepted);
+}
+
+Case make_case(Problem<double> problem, Damping<double> damping, std::string label, std::uint64_t seed, bool exact) {
+  return {std::move(problem), std::move(damping), std::move(label), seed, exact, std::make_shared<Known>()};
+}
+
+Case make_case(const generators::Spec& spec) {
+  generators::Built built = generators::build(spec);
+  const auto size = static_cast<Index>(spec.bodies.size());
+  const bool exact = built.problem.structure->dofs() <= 40 && built.problem.structure->rows <= 40 && size <= 8;
+  return make_case(std::move(built.problem), std::move(built.damping),
+                   spec.family + " n=" + std::to_string(size) + " seed=" + std::to_string(spec.seed), spec.seed, exact);
+}
+
+Case make_case(std::string_view family, Index n, std::uint64_t seed) {
+  const generators::FamilyRow& row = generators::find_family(family);
+  Case c = make_case(row.make(n, seed));
+  c.exact = n <= row.exact_size;
+  c.label = std::string(family) + " n=" + std::to_string(n) + " seed=" + std::to_string(seed);
+  return c;
+}
+
+Outcome check(const LawRow& law, const OperatorRow& op, const Case& c) {
+  Outcome outcome{law.name, op.name, c.label, nullptr, {}};
+  try {
+    outcome.skipped = law.why_not(op, c);
+    if (!outcome.skipped) outcome.verdict = law.check(op, c);
+  } catch (const std::exception& e) {
+    outcome.verdict = failure(e.what(), law.bound);
+  }
+  return outcome;
+}
+
+std::vector<Outcome> check(const OperatorRow& op, const Case& c) {
+  std::vector<Outcome> outcomes;
+  for (const LawRow& law : laws()) outcomes.push_back(check(law, op, c));
+  return outcomes;
+}
+
+}  // namespace delassus::laws

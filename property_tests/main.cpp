@@ -1,0 +1,89 @@
+// The loop: for every operator, on every family, every law that applies.
+//
+//   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--verbose]
+//
+// Prints the worst ratio per law and operator and why anything was skipped. Exit code 0: every law holds; 1: not.
+#include <cstdlib>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+#include "property_tests/allocations.h"
+#include "property_tests/summary.h"
+
+namespace {
+
+using namespace delassus;
+using namespace delassus::laws;
+
+struct Options {
+  std::string op, family, law;
+  std::uint64_t seeds = 3;
+  int shard = 0, shards = 1;
+  bool verbose = false;
+};
+
+void read_shard(const std::string& text, Options& o) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) throw ModelError("command line", "--shard", text, "i/n with 1 <= i <= n");
+  o.shard = std::stoi(text.substr(0, slash)) - 1;
+  o.shards = std::stoi(text.substr(slash + 1));
+  if (o.shard < 0 || o.shard >= o.shards) throw ModelError("command line", "--shard", text, "i/n with 1 <= i <= n");
+}
+
+Options read(int argc, char** argv) {
+  Options o;
+  for (int k = 1; k < argc; ++k) {
+    const std::string key = argv[k];
+    if (key == "--verbose") {
+      o.verbose = true;
+      continue;
+    }
+    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", "--op --family --law --seeds --shard --verbose");
+    const std::string value = argv[++k];
+    if (key == "--op") o.op = find_operator(value).name;
+    else if (key == "--family") o.family = generators::find_family(value).name;
+    else if (key == "--law") o.law = find_law(value).name;
+    else if (key == "--seeds") o.seeds = std::stoull(value);
+    else if (key == "--shard") read_shard(value, o);
+    else throw ModelError("command line", key, "is unknown", "--op --family --law --seeds --shard --verbose");
+  }
+  return o;
+}
+
+void check_case(const Options& o, const Case& c, Summary& summary) {
+  for (const OperatorRow& op : operators())
+    for (const LawRow& law : laws::laws()) {
+      if ((!o.op.empty() && op.name != o.op) || (!o.law.empty() && law.name != o.law)) continue;
+      const Outcome outcome = check(law, op, c);
+      summary.add(outcome);
+      if (o.verbose || outcome.failed()) print(std::cout, outcome);
+    }
+}
+
+int run(const Options& o) {
+  Summary summary;
+  int cell = 0;
+  for (const generators::FamilyRow& family : generators::families()) {
+    if (!o.family.empty() && family.name != o.family) continue;
+    std::vector<Index> sizes = family.sizes;
+    if (family.exact_size >= 0) sizes.push_back(family.exact_size);
+    for (const Index n : sizes)
+      for (std::uint64_t seed = 1; seed <= o.seeds; ++seed)
+        if (cell++ % o.shards == o.shard) check_case(o, make_case(family.name, n, seed), summary);
+  }
+  summary.print(std::cout);
+  return summary.failed() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  count_allocations();
+  try {
+    return run(read(argc, argv));
+  } catch (const std::exception& e) {
+    std::cerr << "property_tests: " << e.what() << '\n';
+    return 2;
+  }
+}
