@@ -1,0 +1,33 @@
+// One operator on one problem: time, counted operations, memory.
+#pragma once
+
+#include "algorithms/delassus.h"
+#include "algorithms/model.h"
+#include "bench/results.h"
+
+namespace delassus::bench {
+
+/// How long a phase may be watched.
+struct Limits {
+  double budget = 0.02;          ///< seconds per phase
+  double longest_counted = 0.1;  ///< operations are counted only where update, apply and solve together are faster [s]
+};
+
+/// Times every phase the row has and counts its operations. Numerical outcomes end up in the cell's statuses.
+[[nodiscard]] Cell measure(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping,
+                           const Limits& limits);
+
+/// Operations of each phase, counted with the scalar Counted; −1 for a phase the row does not have.
+[[nodiscard]] Operations count_operations(const OperatorRow& row, const Problem<double>& problem,
+                                          const Damping<double>& damping);
+
+/// Time of kinematics(model, q) into given storage.
+[[nodiscard]] Timing time_kinematics(const Model& model, const VectorX<double>& q, double budget);
+
+/// The vector every timing uses: entries in [−1/2, 1/2), the multiples of the golden ratio modulo 1. Shape n.
+[[nodiscard]] VectorX<double> sample_vector(Index n);
+
+/// The same damping, every entry half as large again.
+[[nodiscard]] Damping<double> other_damping(Damping<double> damping);
+
+}  // namespace delassus::bench

@@ -1,0 +1,14 @@
+// What a measurement was made with.
+#pragma once
+
+#include "bench/results.h"
+
+namespace delassus::bench {
+
+/// Processor and system as the operating system names them, compiler and flags as built, revision at build time, now.
+[[nodiscard]] Machine this_machine();
+
+/// Largest resident memory of this process so far [bytes].
+[[nodiscard]] std::int64_t peak_memory();
+
+}  // namespace delassus::bench

@@ -1,0 +1,127 @@
+#include "bench/report.h"
+
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/ladder.h"
+#include "bench/machine.h"
+#include "bench/page.h"
+#include "bench/scene_facts.h"
+#include "bench/text.h"
+#include "bench/verify.h"
+#include "property_tests/laws.h"
+#include "reference/reference.h"
+
+namespace delassus::bench {
+
+namespace {
+
+constexpr double check_limit = 60;         // seconds per scene for all laws
+constexpr std::int64_t quick_rows = 120;   // scenes above are not checked in a quick run
+
+void copy_tables(Results& r) {
+  for (const OperatorRow& o : operators())
+    r.operators.push_back({std::string(o.name), std::string(o.summary), std::string(o.formula), std::string(o.source),
+                           std::string(o.cost), std::string(name(o.apply_error)), std::string(name(o.solve_error)),
+                           o.applies, o.solves, o.zero_damping});
+  for (const laws::LawRow& l : laws::laws())
+    r.laws.push_back({std::string(l.name), std::string(l.identity), std::string(l.bound)});
+  for (const reference::ReferenceRow& f : reference::references())
+    r.references.push_back({std::string(f.name), std::string(f.summary), std::string(f.trusted_where)});
+}
+
+void time_scene(const Scene& scene, const Limits& limits, SceneResult& out) {
+  const Problem<double> problem = problem_of(scene);
+  out.kinematics = time_kinematics(scene.model, scene.q, limits.budget);
+  for (const OperatorRow& row : operators()) out.cells.push_back(measure(row, problem, scene.damping, limits));
+}
+
+std::string verdict_line(const SceneResult& s) {
+  int checked = 0, failed = 0;
+  double worst = 0;
+  for (const Cell& c : s.cells) {
+    checked += c.checked();
+    failed += c.failed();
+    if (const LawResult* w = c.worst(); w && !(w->ratio <= worst)) worst = w->ratio;
+  }
+  if (checked == 0) return "no law could be checked";
+  return format("%d checks, worst ratio ", checked) + three_digits(worst) +
+         (failed ? format(", %d FAILED", failed) : std::string(", all hold"));
+}
+
+void check_scenes(const std::vector<Scene>& scenes, bool quick, Results& r, const Progress& progress) {
+  std::vector<Scene> chosen;
+  std::vector<SceneResult> results;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (quick && r.scenes[i].rows > quick_rows) continue;
+    chosen.push_back(scenes[i]);
+    results.push_back(std::move(r.scenes[i]));
+    index.push_back(i);
+  }
+  int n = 0;
+  verify(chosen, check_limit, results, [&](const SceneResult& s) {
+    progress(format("check %2d/%zu  %s  ", ++n, chosen.size(), pad_right(s.name, 26).c_str()) + verdict_line(s));
+  });
+  for (std::size_t k = 0; k < index.size(); ++k) r.scenes[index[k]] = std::move(results[k]);
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw ModelError(path.string(), "file", "cannot be written", "a directory with write permission");
+}
+
+}  // namespace
+
+Results run_report(const ReportOptions& options, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const Limits limits{options.quick ? 0.004 : 0.02, options.quick ? 0.02 : 0.1};
+  Results r;
+  r.machine = this_machine();
+  r.quick = options.quick;
+  copy_tables(r);
+  std::vector<Scene> scenes;
+  for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) scenes.push_back(open_scene(name));
+  int n = 0;
+  for (const Scene& scene : scenes) {
+    r.scenes.push_back(facts_of(scene));
+    SceneResult& s = r.scenes.back();
+    time_scene(scene, limits, s);
+    progress(format("time  %2d/%zu  %s  %lld dofs, %lld rows", ++n, scenes.size(), pad_right(s.name, 26).c_str(),
+                    static_cast<long long>(s.dofs), static_cast<long long>(s.rows)));
+  }
+  if (options.ladder)
+    r.ladder = climb(ladder_sizes(options.quick ? 1000 : 10000), limits, options.quick ? 0.2 : 1.0, 5e8,
+                     [&](const std::string& line) { progress("size  " + line); });
+  if (options.check) check_scenes(scenes, options.quick, r, progress);
+  r.seconds = seconds_since(start);
+  return r;
+}
+
+void write_report(const Results& results, const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw ModelError(directory.string(), "directory", error.message(), "a directory that can be made and written");
+  write_file(directory / "index.html", page(results));
+  write_file(directory / "results.json", nlohmann::json(results).dump(1) + "\n");
+}
+
+std::string text_table(const Results& r) {
+  std::string s = pad_right("scene", 28) + pad_right("operator", 17) + pad_left("rows", 6) + pad_left("update µs", 12) +
+                  pad_left("apply µs", 11) + pad_left("solve µs", 15) + "  laws\n";
+  for (const SceneResult& scene : r.scenes)
+    for (const Cell& c : scene.cells) {
+      const LawResult* w = c.worst();
+      const bool solved = c.solve_status.empty() || c.solve_status == "ok";
+      s += pad_right(scene.name, 28) + pad_right(c.op, 17) + pad_left(std::to_string(scene.rows), 6) +
+           pad_left(three_digits(c.time.update.lowest), 12) + pad_left(three_digits(c.time.apply.lowest), 11) +
+           pad_left(solved ? three_digits(c.time.solve.lowest) : c.solve_status, 15) + "  " +
+           (!w ? "not checked" : (c.failed() ? format("%d FAILED, ", c.failed()) : std::string("hold, ")) + "worst " + three_digits(w->ratio)) +
+           "\n";
+    }
+  return s;
+}
+
+}  // namespace delassus::bench

@@ -1,0 +1,31 @@
+// The main job: check and time every operator on every scene, write the page and the numbers.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/results.h"
+
+namespace delassus::bench {
+
+struct ReportOptions {
+  std::vector<std::string> scenes;   ///< names; empty: every scene that comes with the library
+  bool quick = false;                ///< shorter timings, ladder to 1000 links, checks on scenes of up to 120 rows
+  bool check = true;                 ///< hold the laws
+  bool ladder = true;                ///< climb the swimmers
+};
+
+using Progress = std::function<void(const std::string&)>;
+
+/// Runs everything. Checks run on all cores, one scene each; timings run alone. @throws ModelError for an unknown scene.
+[[nodiscard]] Results run_report(const ReportOptions& options, const Progress& progress);
+
+/// Writes DIR/index.html and DIR/results.json. @throws ModelError when DIR cannot be written.
+void write_report(const Results& results, const std::filesystem::path& directory);
+
+/// Scenes × operators as plain text: rows, worst ratio, update, apply and solve times.
+[[nodiscard]] std::string text_table(const Results& results);
+
+}  // namespace delassus::bench

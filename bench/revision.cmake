@@ -1,0 +1,15 @@
+# Writes OUT with the revision of the sources and the compiler flags; touches it only when they changed.
+execute_process(COMMAND git describe --always --dirty --abbrev=12
+  WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+if(failed OR NOT revision)
+  set(revision "unknown revision")
+endif()
+string(STRIP "${FLAGS}" flags)
+set(text "#pragma once\n#define DELASSUS_REVISION \"${revision}\"\n#define DELASSUS_FLAGS \"${flags}\"\n")
+set(old "")
+if(EXISTS ${OUT})
+  file(READ ${OUT} old)
+endif()
+if(NOT old STREQUAL text)
+  file(WRITE ${OUT} "${text}")
+endif()

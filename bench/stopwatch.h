@@ -1,0 +1,44 @@
+// Wall-clock time of one call: steady clock, warm caches, several batches in one run.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace delassus::bench {
+
+/// Time of one call [µs]: median and lowest over batches; NaN when not measured.
+struct Timing {
+  double median = std::numeric_limits<double>::quiet_NaN();
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  int batches = 0;
+  [[nodiscard]] bool measured() const { return batches > 0; }
+};
+
+[[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Calls `f` once to warm up, then in up to 15 batches of equal length within about `budget` seconds. A call that is
+/// longer than the budget is timed once, cold.
+template <class F> [[nodiscard]] Timing stopwatch(F&& f, double budget) {
+  const auto timed = [&](std::int64_t calls) {
+    const auto start = std::chrono::steady_clock::now();
+    for (std::int64_t i = 0; i < calls; ++i) f();
+    return seconds_since(start) / static_cast<double>(calls);
+  };
+  double once = timed(1);
+  if (once > budget) return {1e6 * once, 1e6 * once, 1};
+  once = std::min(once, timed(1));
+  const auto calls = std::max<std::int64_t>(1, std::llround(budget / 15 / std::max(once, 1e-9)));
+  const double batch = static_cast<double>(calls) * once;
+  const int batches = std::clamp(static_cast<int>(budget / batch), 3, 15);
+  std::vector<double> times;
+  for (int b = 0; b < batches; ++b) times.push_back(1e6 * timed(calls));
+  std::sort(times.begin(), times.end());
+  return {times[times.size() / 2], times.front(), batches};
+}
+
+}  // namespace delassus::bench

@@ -1,0 +1,92 @@
+// `delassus apply SCENE --op NAME [--solve]`: one operator on one vector.
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+
+namespace delassus::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, op, input;
+  bool solve = false, as_json = false;
+  double damping = 0;
+};
+
+void require_capability(const OperatorRow& row, bool solve) {
+  if (solve ? row.solves : row.applies) return;
+  std::string able;
+  for (const OperatorRow& o : operators())
+    if (solve ? o.solves : o.applies) able += (able.empty() ? "" : ", ") + std::string(o.name);
+  throw ModelError("", "--op " + std::string(row.name), solve ? "it has no solve" : "it has no apply (use --solve)", able);
+}
+
+struct Answer {
+  VectorX<double> output;
+  Report report;
+};
+
+Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>& input, bool solve) {
+  const Problem<double> problem = problem_of(scene);
+  const auto op = row.make<double>();
+  op->analyze(problem.structure);
+  const Report update = op->update(problem, scene.damping);
+  Workspace<double> workspace(op->workspace());
+  const MatrixX<double> in = input;
+  MatrixX<double> out = MatrixX<double>::Zero(in.rows(), 1);
+  Report report = solve ? op->solve(in, out, workspace) : op->apply(in, out, workspace);
+  if (report.ok() && !update.ok() && solve) report = update;
+  return {out.col(0), report};
+}
+
+void print_text(const Options& o, const VectorX<double>& input, const Answer& answer) {
+  std::printf("%s  %s  %s\n%6s  %24s  %24s\n", o.scene.c_str(), o.op.c_str(), o.solve ? "f = A⁻¹ a" : "a = A f", "row",
+              "input", "output");
+  for (Index i = 0; i < input.size(); ++i)
+    std::printf("%6lld  %24.17g  %24.17g\n", static_cast<long long>(i), input[i], answer.output[i]);
+  std::printf("status %s\n", std::string(name(answer.report.status)).c_str());
+}
+
+int apply(const Options& o, bool has_damping) {
+  const OperatorRow& row = find_operator(o.op);
+  require_capability(row, o.solve);
+  const Scene scene = open(o.scene, has_damping ? std::optional<double>(o.damping) : std::nullopt);
+  const auto structure = structure_of(scene.model);
+  const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
+  const VectorX<double> input =
+      o.input.empty() ? VectorX<double>::Ones(structure->rows) : read_vector(o.input, structure->rows, meaning);
+  const Answer answer = compute(row, scene, input, o.solve);
+  if (o.as_json) {
+    json j = {{"scene", scene.name}, {"op", row.name}, {"function", o.solve ? "solve" : "apply"},
+              {"dof", structure->dofs()}, {"rows", structure->rows}, {"damping", damping_json(scene.damping)},
+              {"input", std::vector<double>(input.begin(), input.end())},
+              {"output", std::vector<double>(answer.output.begin(), answer.output.end())},
+              {"report", report_json(answer.report)}};
+    if (!scene.damping.blocks.empty()) j["damping_blocks"] = damping_blocks_json(scene.damping);
+    std::printf("%s\n", j.dump().c_str());
+  } else {
+    print_text(o, input, answer);
+  }
+  return answer.report.ok() ? good : law_broken;
+}
+
+}  // namespace
+
+void add_apply(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("apply", "apply or invert one operator: a = A f, or with --solve f = A⁻¹ a");
+  auto o = std::make_shared<Options>();
+  c->add_option("scene", o->scene, "name, .yaml file or swimmer:N")->required();
+  c->add_option("--op", o->op, "operator (see `delassus list operators`)")->required();
+  c->add_flag("--solve", o->solve, "f = A⁻¹ a instead of a = A f");
+  c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
+  CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's");
+  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report}");
+  c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");
+  c->callback([=, &run] { run = [=] { return apply(*o, damping->count() > 0); }; });
+}
+
+}  // namespace delassus::cli

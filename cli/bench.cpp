@@ -1,0 +1,127 @@
+// `delassus bench`: times, counted operations and memory of operators on scenes; comparison with an earlier run.
+#include <cstdio>
+#include <fstream>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/cell.h"
+#include "bench/machine.h"
+#include "bench/scene_facts.h"
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+
+namespace delassus::cli {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes, ops;
+  std::string baseline;
+  double budget = 0.02, slack = 1.5;
+  bool as_json = false;
+};
+
+constexpr const char* phases[] = {"analyze", "update", "new_damping", "apply", "solve"};
+
+json scene_json(const std::string& name, const Options& o) {
+  const Scene scene = open(name, std::nullopt);
+  bench::SceneResult r = bench::facts_of(scene, false);
+  const Problem<double> problem = problem_of(scene);
+  r.kinematics = bench::time_kinematics(scene.model, scene.q, o.budget);
+  for (const OperatorRow* row : chosen_operators(o.ops))
+    r.cells.push_back(bench::measure(*row, problem, scene.damping, {o.budget, 0.1}));
+  return r;
+}
+
+std::string lowest(const json& timing) { return timing.is_null() ? "–" : bench::three_digits(timing["lowest"]); }
+
+void print_scene(const json& s) {
+  std::printf("%s: %lld dofs, %lld rows; kinematics %s µs\n", s["scene"].get<std::string>().c_str(), s["dof"].get<long long>(),
+              s["rows"].get<long long>(), lowest(s["kinematics_microseconds"]).c_str());
+  std::printf("  %-18s %10s %10s %12s %10s %10s   [µs]  %12s %10s\n", "operator", "analyze", "update", "new damping", "apply",
+              "solve", "operations", "memory");
+  for (const json& c : s["operators"]) {
+    std::string line = "  " + bench::pad_right(c["operator"], 18);
+    for (const char* phase : phases)
+      line += " " + bench::pad_left(lowest(c["microseconds"][phase]), phase == std::string("new_damping") ? 12 : 10);
+    const json& n = c["operations"]["update"];
+    line += "         " + bench::pad_left(n.is_null() ? "–" : bench::short_count(n), 12) + " " +
+            bench::pad_left(bench::short_bytes(c["bytes"]), 10);
+    if (c["solve_status"] != "ok" && c["solve_status"] != "") line += "  solve: " + c["solve_status"].get<std::string>();
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+json read_baseline(const std::string& file) {
+  std::ifstream stream(file);
+  const std::string accepted = "a file written by `delassus bench --json` or the results.json of a report";
+  if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
+  json j = json::parse(stream, nullptr, false);
+  if (j.is_discarded() || !j.is_object() || !j.contains("scenes")) throw ModelError(file, "JSON", "has no `scenes`", accepted);
+  return j["scenes"];
+}
+
+/// Prints every phase slower than slack × the baseline, and every count of operations that grew; returns how many.
+int compare(const json& now, const json& before, double slack) {
+  int worse = 0;
+  for (const char* phase : phases) {
+    const json &a = now["microseconds"][phase], &b = before["microseconds"][phase];
+    if (a.is_null() || b.is_null() || a["lowest"].get<double>() <= slack * b["lowest"].get<double>()) continue;
+    ++worse;
+    std::fprintf(stderr, "slower: %s %s: %s µs, baseline %s µs\n", now["operator"].get<std::string>().c_str(), phase,
+                 lowest(a).c_str(), lowest(b).c_str());
+  }
+  for (const auto& [phase, n] : now["operations"].items()) {
+    const json& b = before["operations"][phase];
+    if (n.is_null() || b.is_null() || n <= b) continue;
+    ++worse;
+    std::fprintf(stderr, "more work: %s %s: %s operations, baseline %s\n", now["operator"].get<std::string>().c_str(),
+                 phase.c_str(), n.dump().c_str(), b.dump().c_str());
+  }
+  return worse;
+}
+
+int compare_all(const json& scenes, json baseline, double slack) {
+  int worse = 0;
+  for (const json& s : scenes)
+    for (json& b : baseline) {
+      if (b["scene"] != s["scene"]) continue;
+      for (const json& c : s["operators"])
+        for (json& d : b["operators"])
+          if (c["operator"] == d["operator"]) worse += compare(c, d, slack);
+    }
+  return worse;
+}
+
+int run_bench(const Options& o) {
+  json baseline;
+  if (!o.baseline.empty()) baseline = read_baseline(o.baseline);
+  json out = {{"units", {{"time", "µs per call"}, {"memory", "bytes"}}}, {"scenes", json::array()}};
+  const bench::Machine m = bench::this_machine();
+  out["machine"] = {{"processor", m.processor}, {"compiler", m.compiler}, {"flags", m.flags}, {"revision", m.revision}, {"date", m.date}};
+  for (const std::string& name : o.scenes.empty() ? scene_names() : o.scenes) {
+    out["scenes"].push_back(scene_json(name, o));
+    if (!o.as_json) print_scene(out["scenes"].back());
+  }
+  if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
+  return !o.baseline.empty() && compare_all(out["scenes"], baseline, o.slack) ? slower : good;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("bench", "time, counted operations and memory of operators on scenes");
+  auto o = std::make_shared<Options>();
+  c->add_option("--scene", o->scenes, "only these scenes (also files and swimmer:N)");
+  c->add_option("--op", o->ops, "only these operators");
+  c->add_option("--budget", o->budget, "seconds of timing per phase")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--baseline", o->baseline, "JSON of an earlier run on the same machine");
+  c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_flag("--json", o->as_json, "{machine, units, scenes}");
+  c->footer("Times are the lowest of several batches. Exit code 3 when a phase is slower than slack × baseline or needs "
+            "more counted operations.");
+  c->callback([=, &run] { run = [=] { return run_bench(*o); }; });
+}
+
+}  // namespace delassus::cli

@@ -1,0 +1,121 @@
+// `delassus check`: the laws against the references; the worst ratio per law.
+#include <cstdio>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "property_tests/laws.h"
+
+namespace delassus::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, family;
+  std::vector<std::string> ops;
+  Index n = 0;
+  std::uint64_t seed = 1;
+  bool as_json = false;
+};
+
+/// The cases the options ask for: a scene; one family; or every family at the middle of its sizes.
+std::vector<laws::Case> cases(const Options& o) {
+  if (!o.scene.empty()) {
+    const Scene scene = open(o.scene, std::nullopt);
+    return {laws::make_case(problem_of(scene), scene.damping, scene.name, o.seed)};
+  }
+  std::vector<laws::Case> out;
+  for (const generators::FamilyRow& f : generators::families()) {
+    if (!o.family.empty() && o.family != f.name) continue;
+    out.push_back(laws::make_case(f.name, o.n > 0 ? o.n : f.sizes[f.sizes.size() / 2], o.seed));
+  }
+  if (out.empty()) static_cast<void>(generators::find_family(o.family));  // throws, listing the names
+  return out;
+}
+
+/// Worst outcome of one law over the cases.
+struct Line {
+  int checked = 0, failed = 0, skipped = 0;
+  double ratio = -1;
+  std::string bound, label, note, why_skipped;
+
+  void add(const laws::Outcome& o) {
+    if (o.skipped) {
+      ++skipped;
+      why_skipped = o.skipped;
+      return;
+    }
+    ++checked;
+    failed += o.failed();
+    if (o.verdict.ratio <= ratio) return;
+    ratio = o.verdict.ratio;
+    bound = o.verdict.bound;
+    label = o.label;
+    note = o.verdict.note;
+  }
+};
+
+json line_json(std::string_view law, const Line& l) {
+  json j = {{"law", law}, {"checked", l.checked}, {"failed", l.failed}, {"skipped", l.skipped}};
+  if (l.checked)
+    j.update({{"worst_ratio", std::isfinite(l.ratio) ? json(l.ratio) : json("infinity")}, {"bound", l.bound}, {"case", l.label}});
+  if (!l.note.empty()) j["note"] = l.note;
+  if (l.skipped) j["why_skipped"] = l.why_skipped;
+  return j;
+}
+
+void print_line(std::string_view law, const Line& l) {
+  const std::string name = bench::pad_right(std::string(law), 28);
+  if (!l.checked) {
+    std::printf("  - %s not checked: %s\n", name.c_str(), l.why_skipped.c_str());
+    return;
+  }
+  std::printf("  %s %s %8s  %3d checked%s  %s%s%s\n", l.failed ? "✗" : "✓", name.c_str(), bench::three_digits(l.ratio).c_str(),
+              l.checked, l.skipped ? bench::format(", %d skipped", l.skipped).c_str() : "", l.label.c_str(),
+              l.note.empty() ? "" : ": ", l.note.c_str());
+}
+
+int check(const Options& o) {
+  if (!o.family.empty() && !o.scene.empty())
+    throw ModelError("", "check", "both --family and --scene are given", "one of them, or none for every family");
+  const auto ops = chosen_operators(o.ops);
+  const std::vector<laws::Case> all = cases(o);
+  int failed = 0;
+  json out = json::array();
+  for (const OperatorRow* op : ops) {
+    std::vector<Line> lines(laws::laws().size());
+    for (const laws::Case& c : all)
+      for (std::size_t i = 0; i < lines.size(); ++i) lines[i].add(laws::check(laws::laws()[i], *op, c));
+    json rows = json::array();
+    if (!o.as_json) std::printf("%s\n", std::string(op->name).c_str());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      failed += lines[i].failed;
+      if (o.as_json) rows.push_back(line_json(laws::laws()[i].name, lines[i]));
+      else print_line(laws::laws()[i].name, lines[i]);
+    }
+    out.push_back({{"name", op->name}, {"laws", rows}});
+  }
+  if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
+  else std::printf("%zu cases, %d failed; a law holds below ratio %g\n", all.size(), failed, laws::pass_below);
+  return failed ? law_broken : good;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("check", "hold the laws against the references; worst error ratio per law");
+  auto o = std::make_shared<Options>();
+  c->add_option("--op", o->ops, "only these operators");
+  c->add_option("--family", o->family, "one family of random problems (see `delassus list families`)");
+  c->add_option("--scene", o->scene, "a scene instead of families");
+  c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(CLI::PositiveNumber);
+  c->add_option("--seed", o->seed, "of the problem and its vectors")->capture_default_str();
+  c->add_flag("--json", o->as_json, "an array of {name, laws}");
+  c->footer("Without --family and --scene: every family. Exit code 1 when a law is broken.");
+  c->callback([=, &run] { run = [=] { return check(*o); }; });
+}
+
+}  // namespace delassus::cli

@@ -1,0 +1,77 @@
+#include "cli/common.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace delassus::cli {
+
+Scene open(const std::string& name, const std::optional<double>& damping) {
+  Scene scene = open_scene(name);
+  if (!damping) return scene;
+  if (!(std::isfinite(*damping) && *damping >= 0))
+    throw ModelError("", "--damping", std::to_string(*damping) + " 1/kg", "a finite number ≥ 0 [1/kg]");
+  scene.damping = Damping<double>::uniform(static_cast<Index>(scene.damping.diagonal.size()), *damping);
+  return scene;
+}
+
+json damping_json(const Damping<double>& damping) {
+  std::vector<double> d = damping.diagonal;
+  for (const auto& block : damping.blocks)
+    for (Index i = 0; i < block.R_inverse.rows(); ++i) d[static_cast<std::size_t>(block.row + i)] = block.R_inverse(i, i);
+  const bool same = damping.blocks.empty() && std::all_of(d.begin(), d.end(), [&](double x) { return x == d.front(); });
+  if (same && !d.empty()) return d.front();
+  return d;
+}
+
+json damping_blocks_json(const Damping<double>& damping) {
+  json blocks = json::array();
+  for (const auto& block : damping.blocks) blocks.push_back({{"row", block.row}, {"R_inverse", matrix_json(block.R_inverse)}});
+  return blocks;
+}
+
+json matrix_json(const MatrixX<double>& m) {
+  json rows = json::array();
+  for (Index i = 0; i < m.rows(); ++i) {
+    json row = json::array();
+    for (Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+json report_json(const Report& r) {
+  const auto known = [](double x) { return x < 0 ? json(nullptr) : json(x); };
+  return {{"status", name(r.status)}, {"where", r.where < 0 ? json(nullptr) : json(r.where)}, {"iterations", r.iterations},
+          {"backward_error", known(r.backward_error)}, {"error_bound", known(r.error_bound)},
+          {"rcond_estimate", known(r.rcond_estimate)}};
+}
+
+VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning) {
+  const std::string accepted = "a JSON array of " + std::to_string(size) + " finite numbers, " + meaning;
+  std::ifstream stream(file);
+  if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
+  const json j = json::parse(stream, nullptr, false);
+  if (j.is_discarded()) throw ModelError(file, "JSON", "is not valid JSON", accepted);
+  if (!j.is_array()) throw ModelError(file, "JSON", std::string("is of type ") + j.type_name(), accepted);
+  if (static_cast<Index>(j.size()) != size)
+    throw ModelError(file, "array", "has " + std::to_string(j.size()) + " entries", accepted);
+  VectorX<double> x(size);
+  for (Index i = 0; i < size; ++i) {
+    const json& entry = j[static_cast<std::size_t>(i)];
+    if (!entry.is_number() || !std::isfinite(entry.get<double>()))
+      throw ModelError(file, "entry " + std::to_string(i), entry.dump() + " is not a finite number", accepted);
+    x[i] = entry.get<double>();
+  }
+  return x;
+}
+
+std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names) {
+  std::vector<const OperatorRow*> rows;
+  if (names.empty())
+    for (const OperatorRow& row : operators()) rows.push_back(&row);
+  for (const std::string& name : names) rows.push_back(&find_operator(name));
+  return rows;
+}
+
+}  // namespace delassus::cli

@@ -1,0 +1,36 @@
+// What several subcommands share: damping from the command line, JSON of vectors, operators by capability.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "algorithms/delassus.h"
+#include "models/scene.h"
+
+namespace delassus::cli {
+
+using nlohmann::json;
+
+/// Opens a scene and, when `damping` is given, replaces R⁻¹ of every row by it [1/kg].
+/// @throws ModelError for an unknown scene and for a damping that is negative or not finite.
+[[nodiscard]] Scene open(const std::string& scene, const std::optional<double>& damping);
+
+/// One number when every row has the same damping, otherwise an array of the rows' diagonal entries.
+[[nodiscard]] json damping_json(const Damping<double>& damping);
+/// [{row, R_inverse: [[…]]}] of the dense blocks.
+[[nodiscard]] json damping_blocks_json(const Damping<double>& damping);
+/// Rows of a matrix.
+[[nodiscard]] json matrix_json(const MatrixX<double>& m);
+/// {status, where, iterations, backward_error, error_bound, rcond_estimate}; null: not computed.
+[[nodiscard]] json report_json(const Report& report);
+
+/// A JSON array of `size` finite numbers. @throws ModelError for a missing file, another length or anything else.
+[[nodiscard]] VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning);
+
+/// The named rows, or all when `names` is empty. @throws ModelError listing the accepted names.
+[[nodiscard]] std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names);
+
+}  // namespace delassus::cli

@@ -1,0 +1,130 @@
+// `delassus describe SCENE`: what a scene is made of, how it will be eliminated, what every operator will hold.
+#include <algorithm>
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "algorithms/elimination.h"
+#include "bench/scene_facts.h"
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "cli/effects.h"
+
+namespace delassus::cli {
+
+namespace {
+
+/// The elimination order as body names, and the off-diagonal 6×6 blocks before and after fill.
+json plan_json(const Scene& scene, const Structure& structure, Matrix matrix) {
+  const Plan plan = make_plan(structure, matrix);
+  json order = json::array();
+  for (const int body : plan.body) order.push_back(scene.model.bodies[static_cast<std::size_t>(body)].name);
+  std::vector<int> first = plan.constraint_pairs;
+  std::sort(first.begin(), first.end());
+  const auto before = std::unique(first.begin(), first.end()) - first.begin();
+  return {{"order", order}, {"blocks_of_constraints", before}, {"blocks_with_fill", plan.blocks},
+          {"steps_without_rows", plan.first_active}};
+}
+
+json operators_json(const std::shared_ptr<const Structure>& structure) {
+  json out = json::array();
+  for (const OperatorRow& row : operators()) {
+    const auto op = row.make<double>();
+    op->analyze(structure);
+    out.push_back({{"name", row.name}, {"bytes", op->bytes()},
+                   {"workspace_bytes", op->workspace() * static_cast<Index>(sizeof(double))}});
+  }
+  return out;
+}
+
+json constraints_json(const Model& model) {
+  json out = json::array();
+  Index row = 0;
+  for (const Constraint& c : model.constraints) {
+    const auto end = [&](Index b) { return b == ground ? std::string("world") : model.bodies[static_cast<std::size_t>(b)].name; };
+    const Index rows = row_count(model, c);
+    json j = {{"kind", name(c.kind)}, {"row", row}, {"rows", rows}};
+    if (!c.name.empty()) j["name"] = c.name;
+    if (c.kind != Constraint::Kind::coupling && c.kind != Constraint::Kind::general) {
+      j["of"] = end(c.a.body);
+      if (c.kind != Constraint::Kind::joint_friction && c.kind != Constraint::Kind::joint_lock) j["to"] = end(c.b.body);
+    }
+    out.push_back(j);
+    row += rows;
+  }
+  return out;
+}
+
+json describe_json(const Scene& scene) {
+  const auto structure = structure_of(scene.model);
+  const bench::SceneResult facts = bench::facts_of(scene, false);
+  json j = {{"scene", scene.name}, {"bodies", facts.bodies}, {"dof", facts.dofs}, {"rows", facts.rows},
+            {"trees", facts.trees}, {"summary", facts.summary}, {"constraints", constraints_json(scene.model)},
+            {"damping", damping_json(scene.damping)}, {"effects", effects_json(scene)}, {"notes", facts.notes},
+            {"provisional_pose", scene.provisional_pose},
+            {"elimination", {{"M", plan_json(scene, *structure, Matrix::M)}, {"M_R", plan_json(scene, *structure, Matrix::M_R)}}},
+            {"operators", operators_json(structure)}};
+  j["loops"] = {{"any", scene.has_loops}};
+  if (scene.has_loops)
+    j["loops"].update({{"residual", scene.assembly.residual}, {"residual_before", scene.assembly.residual_before},
+                       {"steps", scene.assembly.steps}});
+  return j;
+}
+
+/// A long list shortened in the middle of its text.
+std::string some(const json& list, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, list.size()); ++i) text += (i ? ", " : "") + list[i].get<std::string>();
+  return list.size() > most ? text + bench::format(", … (%zu in all; --json lists them)", list.size()) : text;
+}
+
+void print_line(const char* key, const std::string& value) { std::printf("%-18s %s\n", key, value.c_str()); }
+
+void print_text(const json& j) {
+  print_line("scene", j["scene"]);
+  print_line("bodies", j["bodies"].dump() + " in " + j["trees"].dump() + " tree(s)");
+  print_line("dofs", j["dof"].dump());
+  print_line("rows", j["rows"].dump() + ": " + j["summary"].get<std::string>());
+  print_line("damping [1/kg]", j["damping"].is_array() ? "per row (--json lists it)" : j["damping"].dump());
+  if (j["loops"]["any"].get<bool>())
+    print_line("loops", bench::format("largest closure error %.2e after %d steps of assembly, %.2e before [m or rad]",
+                                      j["loops"]["residual"].get<double>(), j["loops"]["steps"].get<int>(),
+                                      j["loops"]["residual_before"].get<double>()));
+  for (const char* matrix : {"M", "M_R"}) {
+    const json& plan = j["elimination"][matrix];
+    print_line(matrix == std::string("M") ? "elimination of M" : "of M + Jᵀ R J",
+               plan["blocks_with_fill"].dump() + " off-diagonal 6×6 blocks, " + plan["blocks_of_constraints"].dump() +
+                   " before fill; " + plan["steps_without_rows"].dump() + " joints carry no row");
+    print_line("  order", some(plan["order"], 8));
+  }
+  std::printf("effects\n");
+  for (const json& e : j["effects"])
+    std::printf("  %s %-15s %s\n", e["called_for"].get<bool>() ? "+" : "-", e["name"].get<std::string>().c_str(),
+                e["why"].get<std::string>().c_str());
+  std::printf("operators\n");
+  for (const json& o : j["operators"])
+    std::printf("  %-18s %10s, workspace %s\n", o["name"].get<std::string>().c_str(),
+                bench::short_bytes(o["bytes"]).c_str(), bench::short_bytes(o["workspace_bytes"]).c_str());
+  for (const json& note : j["notes"]) print_line("note", note);
+}
+
+int describe(const std::string& name, bool as_json) {
+  const json j = describe_json(open(name, std::nullopt));
+  if (as_json) std::printf("%s\n", j.dump(1).c_str());
+  else print_text(j);
+  return good;
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("describe", "bodies, rows, elimination order, fill, bytes, effects called for and skipped");
+  auto scene = std::make_shared<std::string>();
+  auto as_json = std::make_shared<bool>(false);
+  c->add_option("scene", *scene, "name, .yaml file or swimmer:N")->required();
+  c->add_flag("--json", *as_json, "everything, as JSON");
+  c->callback([=, &run] { run = [=] { return describe(*scene, *as_json); }; });
+}
+
+}  // namespace delassus::cli

@@ -1,0 +1,100 @@
+// `delassus list`: the tables, as they are compiled in.
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "generators/families.h"
+#include "property_tests/laws.h"
+#include "reference/reference.h"
+
+namespace delassus::cli {
+
+namespace {
+
+json operators_json() {
+  json out = json::array();
+  for (const OperatorRow& o : operators())
+    out.push_back({{"name", o.name}, {"summary", o.summary}, {"formula", o.formula}, {"cost", o.cost}, {"source", o.source},
+                   {"applies", o.applies}, {"solves", o.solves}, {"zero_damping", o.zero_damping},
+                   {"terminates_exactly", o.terminates_exactly}, {"apply_error", name(o.apply_error)},
+                   {"solve_error", name(o.solve_error)}});
+  return out;
+}
+
+json references_json() {
+  json out = json::array();
+  for (const reference::ReferenceRow& r : reference::references())
+    out.push_back({{"name", r.name}, {"summary", r.summary}, {"trusted", r.trusted_where}, {"roundoff", r.roundoff}});
+  return out;
+}
+
+json families_json() {
+  json out = json::array();
+  for (const generators::FamilyRow& f : generators::families())
+    out.push_back({{"name", f.name}, {"summary", f.summary}, {"sizes", f.sizes}, {"regular", f.regular}});
+  return out;
+}
+
+json laws_json() {
+  json out = json::array();
+  for (const laws::LawRow& l : laws::laws())
+    out.push_back({{"name", l.name}, {"summary", l.identity}, {"bound", l.bound}});
+  return out;
+}
+
+json scenes_json() {
+  json out = json::array();
+  for (const std::string& s : scene_names()) out.push_back({{"name", s}, {"summary", "scene file"}});
+  out.push_back({{"name", "swimmer:N"}, {"summary", "chain of N links in the plane, two contacts per link; N ≥ 1"}});
+  return out;
+}
+
+struct Table {
+  const char* name;
+  json (*rows)();
+};
+constexpr Table tables[] = {{"operators", operators_json}, {"references", references_json}, {"families", families_json},
+                            {"laws", laws_json},           {"scenes", scenes_json}};
+
+void print_table(const json& rows) {
+  std::size_t width = 0;
+  for (const json& row : rows) width = std::max(width, row["name"].get<std::string>().size());
+  for (const json& row : rows)
+    std::printf("  %s  %s\n", bench::pad_right(row["name"], width).c_str(), row["summary"].get<std::string>().c_str());
+}
+
+int list(const std::string& wanted, bool as_json) {
+  json all = json::array();
+  for (const Table& t : tables) {
+    if (!wanted.empty() && wanted != t.name) continue;
+    const json rows = t.rows();
+    if (!as_json) {
+      std::printf("%s%s\n", t.name, wanted.empty() ? ":" : "");
+      print_table(rows);
+    } else if (!wanted.empty()) {
+      all = rows;
+    } else {
+      all.push_back({{"name", t.name}, {"rows", rows}});
+    }
+  }
+  if (as_json) std::printf("%s\n", all.dump(1).c_str());
+  return good;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes");
+  auto table = std::make_shared<std::string>();
+  auto as_json = std::make_shared<bool>(false);
+  std::set<std::string> names;
+  for (const Table& t : tables) names.insert(t.name);
+  c->add_option("table", *table, "one table; all when left out")->check(CLI::IsMember(names));
+  c->add_flag("--json", *as_json, "an array of objects with `name`");
+  c->callback([=, &run] { run = [=] { return list(*table, *as_json); }; });
+}
+
+}  // namespace delassus::cli
