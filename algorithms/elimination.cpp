@@ -18,9 +18,9 @@ struct Tree {
   std::vector<char> active;
 };
 
-Tree describe(const Structure& s) {
+Tree describe(const Structure& s, Branches branches) {
   const Index n = s.bodies();
-  Tree t{std::vector<int>(n, 0), std::vector<int>(n, 0), std::vector<char>(n, 0)};
+  Tree t{std::vector<int>(n, 0), std::vector<int>(n, 0), std::vector<char>(n, branches == Branches::all)};
   for (const auto& e : s.link_constraints)
     for (const auto& link : e.links) t.active[link.body] = 1;
   for (const auto& j : s.joint_constraints) t.active[j.body] = 1;
@@ -64,9 +64,8 @@ class Neighbours {
 using Cliques = std::vector<std::pair<int, std::vector<int>>>;
 
 // Alg. 4, lines 12 and 16–20: eliminate, joining all members of Q_i to each other.
-Cliques minimum_degree(const Structure& s, Matrix matrix) {
+Cliques minimum_degree(const Structure& s, Matrix matrix, Tree tree) {
   const int n = narrow(s.bodies());
-  Tree tree = describe(s);
   Neighbours neighbours(s, matrix);
   using Key = std::tuple<bool, int, int, int, int>;  // active, degree, −depth, dofs, body
   const auto parent = [&](int i) { return narrow(s.parent[i]); };
@@ -139,8 +138,9 @@ void append_runs(Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Structure& s, Matrix matrix) {
-  const Cliques cliques = minimum_degree(s, matrix);
+Plan make_plan(const Structure& s, Matrix matrix, Branches branches) {
+  const Tree tree = describe(s, branches);
+  const Cliques cliques = minimum_degree(s, matrix, tree);
   const int n = narrow(s.bodies());
   Plan plan;
   plan.steps = n;
@@ -162,7 +162,6 @@ Plan make_plan(const Structure& s, Matrix matrix) {
   }
 
   plan.first_column = plan.first_member = plan.first_w = plan.first_pair = {0};
-  const Tree tree = describe(s);
   for (int i = 0; i < n; ++i) {
     const int b = plan.body[i];
     if (!tree.active[b]) plan.first_active = i + 1;

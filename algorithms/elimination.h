@@ -56,6 +56,8 @@ struct Plan {
 
 /// Which matrix is factored: M couples a joint with its ancestors only, M_R = M + JᵀRJ also all links of a constraint.
 enum class Matrix : std::uint8_t { M, M_R };
-[[nodiscard]] Plan make_plan(const Structure& structure, Matrix matrix);
+/// Whether vectors visit every joint, or only those with rows in their subtree.
+enum class Branches : std::uint8_t { with_rows, all };
+[[nodiscard]] Plan make_plan(const Structure& structure, Matrix matrix, Branches branches = Branches::with_rows);
 
 }  // namespace delassus

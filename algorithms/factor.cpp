@@ -13,6 +13,11 @@ template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan)
   d_inverse_.assign(columns, T(0));
   armature_.assign(columns, T(0));
   w_.assign(static_cast<std::size_t>(plan.first_w.back()), Six<T>::zero());
+  l_of_.assign(static_cast<std::size_t>(plan.steps), -1);
+  int wide_joints = 0;
+  for (int i = 0; i < plan.steps; ++i)
+    if (plan.first_column[i + 1] - plan.first_column[i] > 1) l_of_[i] = wide_joints++;
+  l_.assign(static_cast<std::size_t>(36 * wide_joints), T(0));
   inertia_.assign(static_cast<std::size_t>(plan.steps), SixBySix<T>::zero());
   inertia0_.assign(active, SixBySix<T>::zero());
   s0_.assign(static_cast<std::size_t>(plan.active_columns()), Six<T>::zero());
@@ -180,6 +185,7 @@ template <class T> bool Factor<T>::diagonalise(int i) {
     d_inverse_[first + c] = T(1) / D[c][c];
     for (int d = c + 1; d < n; ++d) {
       const T l = D[d][c] * d_inverse_[first + c];
+      l_[36 * l_of_[i] + 6 * d + c] = l;
       for (int e = d; e < n; ++e) D[e][d] -= D[e][c] * l;
       subtract_scaled(s[d], s[c], l);
       for (int k = 0; k < q; ++k) subtract_scaled(w[k * n + d], w[k * n + c], l);
@@ -251,10 +257,10 @@ template <class T> Index Factor<T>::workspace() const { return 8 * plan_->active
 template <class T> Index Factor<T>::bytes() const {
   const auto sixes = s_.size() + w_.size() + s0_.size() + k_.size() + weighted_.size();
   const auto blocks = inertia_.size() + inertia0_.size() + block_.size();
-  const auto scalars = d_inverse_.size() + armature_.size() + joint_k0_.size() + joint_k_.size() + 36 * joint_weight_.size();
+  const auto scalars = d_inverse_.size() + l_.size() + armature_.size() + joint_k0_.size() + joint_k_.size() + 36 * joint_weight_.size();
   return static_cast<Index>(sixes * sizeof(Six<T>) + blocks * sizeof(SixBySix<T>) + scalars * sizeof(T) +
                             attachments_.size() * sizeof(Attachment) + joint_rows_.size() * sizeof(JointRows) +
-                            (first_joint_rows_.size() + joint_weight_of_.size()) * sizeof(int));
+                            (first_joint_rows_.size() + joint_weight_of_.size() + l_of_.size()) * sizeof(int));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class Factor<T>;

@@ -36,6 +36,10 @@ template <class T> class Factor {
   /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
   template <class V> void project(const V* x, V* y, V* work) const;
 
+  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of
+  /// freedom; ν may be nullptr. Returns (Jᵀx + τ)ᵀ M_R⁻¹ (Jᵀx + τ), the squared energy norm of ν.
+  T solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
+
   [[nodiscard]] Index workspace() const;  ///< values of V
   [[nodiscard]] Index bytes() const;
 
@@ -67,6 +71,8 @@ template <class T> class Factor {
   // Everything below is in sweep order (steps, then their columns).
   std::vector<Six<T>> s_;            // S_i L⁻ᵀ, per column
   std::vector<T> d_inverse_;         // 1/D, per column
+  std::vector<T> l_;                 // L of D_i = L D Lᵀ, 36 per joint of more than one degree of freedom
+  std::vector<int> l_of_;            // per step, −1: one degree of freedom or none
   std::vector<Six<T>> w_;            // W_j D⁻¹, per step, member, column
   std::vector<SixBySix<T>> inertia_; // H_ii while a step runs
   std::vector<SixBySix<T>> block_;   // couplings H_ij

@@ -3,6 +3,7 @@
 #include "algorithms/cg.h"
 #include "algorithms/dense_cholesky.h"
 #include "algorithms/lcaba.h"
+#include "algorithms/lcaba_refined.h"
 
 namespace delassus {
 namespace {
@@ -42,6 +43,11 @@ const std::vector<OperatorRow>& operators() {
        .cost = "O(n + m) with local loops, O(n + m² d + m³) at worst", .applies = false, .solves = true,
        .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
        .solve_error = ErrorClass::amplified, .makers = makers<Lcaba>()},
+      {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate: the default",
+       .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: docs/accuracy.md",
+       .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::componentwise,
+       .makers = makers<LcabaRefined>()},
       {.name = "cg", .summary = "conjugate gradients on aba_sweep",
        .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
        .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,

@@ -44,14 +44,20 @@ template <class T> [[nodiscard]] inline Six<T> load(const Vector6<T>& x) {
   return y;
 }
 
+/// The lanes of x in double.
+template <class T> [[nodiscard]] inline Lanes8 lanes(const Six<T>& x) {
+  if constexpr (std::is_same_v<T, double>) return x.v;
+  else return Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
+}
+
 /// y += x · s
 template <class T, class V> inline void add_scaled(Six<V>& y, const Six<T>& x, const V& s) {
-  if constexpr (std::is_same_v<V, double>) y.v += x.v * s;
+  if constexpr (std::is_same_v<V, double>) y.v += lanes(x) * s;
   else for (int k = 0; k < 6; ++k) y.v[k] += x[k] * s;
 }
 /// y −= x · s
 template <class T, class V> inline void subtract_scaled(Six<V>& y, const Six<T>& x, const V& s) {
-  if constexpr (std::is_same_v<V, double>) y.v -= x.v * s;
+  if constexpr (std::is_same_v<V, double>) y.v -= lanes(x) * s;
   else for (int k = 0; k < 6; ++k) y.v[k] -= x[k] * s;
 }
 template <class T> inline void add(Six<T>& y, const Six<T>& x) {
@@ -66,7 +72,7 @@ template <class T> inline void scale(Six<T>& y, const T& s) {
 /// xᵀ y
 template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Six<V>& y) {
   if constexpr (std::is_same_v<V, double>) {
-    const Lanes8 p = x.v * y.v;
+    const Lanes8 p = lanes(x) * y.v;
     const auto four = __builtin_shufflevector(p, p, 0, 1, 2, 3) + __builtin_shufflevector(p, p, 4, 5, 6, 7);
     const auto two = __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
     return two[0] + two[1];

@@ -39,7 +39,8 @@ struct Report {
   std::int64_t where = -1;       ///< the row (zero_damping) or degree of freedom (lost_pivot) concerned, −1: none
   int iterations = 0;            ///< refinement or Krylov steps taken
   double backward_error = -1;    ///< normwise relative residual; −1: not computed
-  double error_bound = -1;       ///< rigorous bound on the energy-norm error; −1: not computed
+  double error_bound = -1;       ///< rigorous bound on the error, relative, in the energy norm; −1: not computed
+  double error_estimate = -1;    ///< size of the last correction, relative: the error before it; −1: not computed
   double rcond_estimate = -1;    ///< estimate of 1/κ; −1: not computed
 
   [[nodiscard]] bool ok() const { return status == Status::ok; }

@@ -94,7 +94,39 @@ template <class T> template <class V> void Factor<T>::project(const V* x, V* y, 
   gather(f, u, y);
 }
 
-#define DELASSUS_INSTANTIATE(T) template void Factor<T>::project<T>(const T*, T*, T*) const;
+template <class T> T Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  scatter(x, f, u);
+  for (int i = 0; i < plan_->steps; ++i) {  // u += L⁻¹ τ
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    const T* const t = tau + structure_->first_dof[plan_->body[i]];
+    T v[6];
+    for (int c = 0; c < n; ++c) {
+      v[c] = t[c];
+      for (int d = 0; d < c; ++d) v[c] -= l_[36 * l_of_[i] + 6 * c + d] * v[d];
+      u[first + c] += v[c];
+    }
+  }
+  backward(f, u);
+  T energy(0);  // Σ u² / D
+  for (int c = 0; c < plan_->active_columns(); ++c) energy += u[c] * u[c] / d_inverse_[c];
+  if (nu == nullptr) return energy;
+  forward(f, u);
+  gather(f, u, y);
+  for (int i = 0; i < plan_->steps; ++i) {  // ν = L⁻ᵀ u
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    T* const v = nu + structure_->first_dof[plan_->body[i]];
+    for (int c = n; c-- > 0;) {
+      v[c] = u[first + c];
+      for (int d = c + 1; d < n; ++d) v[c] -= l_[36 * l_of_[i] + 6 * d + c] * v[d];
+    }
+  }
+  return energy;
+}
+
+#define DELASSUS_INSTANTIATE(T) template T Factor<T>::solve(const T*, const T*, T*, T*, T*) const; \
+  template void Factor<T>::project<T>(const T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
 template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
