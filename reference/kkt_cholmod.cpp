@@ -13,7 +13,7 @@ namespace delassus::reference {
 namespace {
 
 constexpr int refinement_limit = 60;
-constexpr double largest_fill = 5e7;
+constexpr double largest_fill = 5e7, largest_work = 1e10;
 
 /// CHOLMOD's objects with their lifetime, and the factorisation of one system.
 class Factor {
@@ -37,10 +37,10 @@ class Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
-  /// Returns the number of non-zeros of L.
-  double analyse() {
+  /// Whether fill and work are within the limits of kkt_cholmod_trusts.
+  bool analyse() {
     const std::size_t n = order_.size();
-    if (n == 0) return 0;
+    if (n == 0) return true;
     cholmod_triplet* t = cholmod_allocate_triplet(n, n, entries_.size(), -1, CHOLMOD_REAL, &common_);
     for (std::size_t k = 0; k < entries_.size(); ++k) {
       static_cast<int*>(t->i)[k] = static_cast<int>(entries_[k].row);
@@ -52,7 +52,7 @@ class Factor {
     cholmod_free_triplet(&t, &common_);
     factor_ = cholmod_analyze_p(matrix_, order_.data(), nullptr, 0, &common_);
     if (!factor_) throw std::runtime_error("kkt_cholmod: CHOLMOD could not analyse the system");
-    return common_.lnz;
+    return common_.lnz <= largest_fill && common_.fl <= largest_work;
   }
 
   /// The unknown whose pivot is lost first, or −1.
@@ -146,7 +146,7 @@ template <class Answer> VectorX<Quad> refine(Factor& factor, const VectorX<Quad>
 }
 
 void require_regular(Factor& factor) {
-  factor.analyse();
+  (void)factor.analyse();
   const Index lost = factor.factorise();
   if (lost >= 0) throw std::runtime_error("kkt_cholmod: pivot lost at unknown " + std::to_string(lost));
 }
@@ -192,7 +192,7 @@ MatrixX<Quad> kkt_cholmod_solve(const Problem<double>& problem, const Damping<do
 
 bool kkt_cholmod_trusts(const Problem<double>& problem, const Damping<double>& damping) {
   Factor factor(kkt(problem, damping), kkt_order(problem, damping, true), true);
-  return factor.analyse() <= largest_fill && factor.factorise() < 0;
+  return factor.analyse() && factor.factorise() < 0;
 }
 
 }  // namespace delassus::reference

@@ -26,7 +26,7 @@ namespace delassus::reference {
 /// f = A⁻¹ a, shapes m×k. @throws as above.
 [[nodiscard]] MatrixX<Quad> kkt_cholmod_solve(const Problem<double>& problem, const Damping<double>& damping,
                                               const MatrixX<double>& a);
-/// The fill is at most 5·10⁷ numbers and no pivot is lost. Cost: one factorisation.
+/// L has at most 5·10⁷ numbers and takes at most 10¹⁰ operations, and no pivot is lost. Cost: one factorisation.
 [[nodiscard]] bool kkt_cholmod_trusts(const Problem<double>& problem, const Damping<double>& damping);
 
 }  // namespace delassus::reference

@@ -60,7 +60,7 @@ const std::vector<ReferenceRow>& references() {
        "up to 600 unknowns 12 N + n + m (cost); M regular; solve: A regular, otherwise it throws",
        unit_roundoff<Quad>, maximal_trusts, maximal_row_apply, maximal_row_solve},
       {"kkt_cholmod", "the maximal-coordinate system, sparse: CHOLMOD's LDLᵀ in double, refined with residuals in Quad",
-       "10⁴ bodies and more; not with massless bodies, redundant undamped rows, or a fill above 5·10⁷",
+       "10⁴ bodies and more; not with massless bodies, redundant undamped rows, or beyond 10¹⁰ operations",
        unit_roundoff<double>, kkt_cholmod_trusts, cholmod_row_apply, cholmod_row_solve},
   };
   return table;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "reference/definition.h"
-
 namespace delassus::reference {
 
 namespace {
@@ -23,52 +21,82 @@ class Classes {
   std::vector<Index> parent_;
 };
 
-/// Degrees of freedom 0…n−1 and, while joining, one node per component of each body.
-Classes coupled_dofs(const Problem<double>& p) {
-  const Structure& s = *p.structure;
-  const Index n = s.dofs();
-  Classes classes(n + 6 * s.bodies());
-  for (Index i = 0; i < s.bodies(); ++i) {
-    const Index node = n + 6 * i;
-    for (Index c = 0; c < 6; ++c)
-      for (Index r = 0; r < 6; ++r)
-        if (p.H[i](r, c) != 0) classes.join(node + r, node + c);
-    for (const Index k : path_dofs(s, i))
-      for (Index c = 0; c < 6; ++c)
-        if (p.S[k][c] != 0 && !p.H[i].col(c).isZero(0)) classes.join(k, node + c);
+/// Joins degrees of freedom that M couples. Nodes: degrees of freedom 0…n−1, then one per component of each body; the
+/// node (i, c) is in the class of every degree of freedom that moves body i along c, when H_i has a column c.
+class Coupling {
+ public:
+  explicit Coupling(const Problem<double>& p)
+      : p_(p), s_(*p.structure), classes_(nodes()), moved_(6 * s_.parent.size(), 0), heavy_(6 * s_.parent.size(), 0) {
+    for (Index i = 0; i < s_.bodies(); ++i) add(i);
   }
-  return classes;
-}
+  [[nodiscard]] Index nodes() const { return s_.dofs() + 6 * s_.bodies(); }
+  Index find(Index node) { return classes_.find(node); }
 
-/// Per row, the degrees of freedom it touches.
-std::vector<std::vector<Index>> touched_dofs(const Problem<double>& p) {
+  /// Calls visit for nodes whose classes hold every degree of freedom that moves body i along c, and no other class.
+  template <class Visit> void movers(Index i, Index c, const Visit& visit) const {
+    for (; i != ground && moved_[6 * i + c]; i = s_.parent[i]) {
+      if (heavy_[6 * i + c]) return visit(node(i, c));
+      own(i, c, visit);
+    }
+  }
+
+ private:
+  [[nodiscard]] Index node(Index i, Index c) const { return s_.dofs() + 6 * i + c; }
+  template <class Visit> void own(Index i, Index c, const Visit& visit) const {
+    for (Index k = s_.first_dof[i]; k < s_.first_dof[i + 1]; ++k)
+      if (p_.S[k][c] != 0) visit(k);
+  }
+  void add(Index i) {
+    for (Index c = 0; c < 6; ++c) {
+      heavy_[6 * i + c] = !p_.H[i].col(c).isZero(0);
+      const auto join = [&](Index other) {
+        moved_[6 * i + c] = 1;
+        if (heavy_[6 * i + c]) classes_.join(node(i, c), other);
+      };
+      own(i, c, join);
+      if (s_.parent[i] != ground) movers(s_.parent[i], c, join);
+    }
+    for (Index c = 0; c < 6; ++c)
+      for (Index r = 0; r < c; ++r)
+        if (moved_[6 * i + c] && moved_[6 * i + r] && p_.H[i](r, c) != 0) classes_.join(node(i, c), node(i, r));
+  }
+
+  const Problem<double>& p_;
+  const Structure& s_;
+  Classes classes_;
+  std::vector<char> moved_, heavy_;  // per node (i, c): something moves it; H_i has a column c
+};
+
+/// Per row, the classes of the degrees of freedom it touches.
+std::vector<std::vector<Index>> touched_classes(const Problem<double>& p, Coupling& coupling) {
   const Structure& s = *p.structure;
   std::vector<std::vector<Index>> out(static_cast<std::size_t>(s.rows));
   for (const auto& e : s.link_constraints)
     for (const auto& link : e.links)
-      for (const Index k : path_dofs(s, link.body))
-        for (Index r = 0; r < e.rows; ++r)
-          if (!p.K[link.first + r].cwiseProduct(p.S[k]).isZero(0)) out[e.row + r].push_back(k);
+      for (Index r = 0; r < e.rows; ++r)
+        for (Index c = 0; c < 6; ++c)
+          if (p.K[link.first + r][c] != 0)
+            coupling.movers(link.body, c, [&](Index node) { out[e.row + r].push_back(coupling.find(node)); });
   for (const auto& j : s.joint_constraints) {
     const Index n = s.dofs(j.body);
     for (Index r = 0; r < j.rows; ++r)
       for (Index k = 0; k < n; ++k)
-        if (p.joint_K[j.first + r * n + k] != 0) out[j.row + r].push_back(s.first_dof[j.body] + k);
+        if (p.joint_K[j.first + r * n + k] != 0) out[j.row + r].push_back(coupling.find(s.first_dof[j.body] + k));
+  }
+  for (auto& row : out) {
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
   }
   return out;
 }
 
 }  // namespace
 
-Zeros::Zeros(const Problem<double>& problem, const Damping<double>& damping) : touched_(touched_dofs(problem)) {
+Zeros::Zeros(const Problem<double>& problem, const Damping<double>& damping) {
   const Index m = problem.structure->rows;
-  Classes dofs = coupled_dofs(problem);
-  dof_classes_ = problem.structure->dofs() + 6 * problem.structure->bodies();
-  for (auto& row : touched_) {
-    for (Index& k : row) k = dofs.find(k);
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  }
+  Coupling coupling(problem);
+  dof_classes_ = coupling.nodes();
+  touched_ = touched_classes(problem, coupling);
   damping_.resize(static_cast<std::size_t>(m));
   for (Index r = 0; r < m; ++r)
     if (damping.diagonal[r] != 0) damping_[r].push_back(r);

@@ -15,7 +15,7 @@ namespace delassus::reference {
 
 class Zeros {
  public:
-  /// Cost O((N + m) d), d = degrees of freedom on a path.
+  /// Cost O(N + m), times the depth where bodies without inertia follow one another.
   Zeros(const Problem<double>& problem, const Damping<double>& damping);
   /// Sets to zero what A f cannot reach. Shapes m×k.
   void clear_apply(const MatrixX<double>& f, MatrixX<Quad>& a) const;
