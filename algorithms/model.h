@@ -12,7 +12,9 @@ namespace delassus {
 /// Joint types. q and ν of each, in order (angular before linear in ν, quaternions w x y z):
 ///   revolute, prismatic   q 1, ν 1    about / along `axis`
 ///   universal             q 2, ν 2    about `axis` of the parent side, then about `axis2` carried along
-///   planar                q 3, ν 3    ν = (rotation about `axis`, translations along two in-plane axes); q the same order
+///   planar                q 3, ν 3    ν = (rotation about `axis`, translations along two in-plane axes t1, t2 fixed on
+///                                     the parent side); q the same order. t1 is the projection of the coordinate axis
+///                                     farthest from `axis` (the first of equals), t2 = axis × t1: x, y for the z axis
 ///   spherical             q 4, ν 3    quaternion; ν = ω in body axes
 ///   floating              q 7, ν 6    position (3), quaternion (4); ν = (ω, v of the frame's origin), body axes
 ///   cylindrical           q 2, ν 2    about, then along `axis`
@@ -57,9 +59,10 @@ struct Frame {
 ///   hinge 5         angular xy, linear xyz (z free)   universal 4     angular about a.z × b.x, linear xyz
 ///   cylindrical 4   angular xy, linear xy             prismatic 5     angular xyz, linear xy (z free)
 ///   planar 3        angular xy, linear z (normal)     distance 1      along the line between the two origins
-///   contact 3       linear along normal z, tangents x, y of frame a
+///   contact 3       linear along normal z, then tangents x, y of frame a (the first row is the normal)
 ///   joint_friction, joint_lock   one row per degree of freedom of the joint of body a.body
-///   coupling 1      Σ_k coefficient_k ν_k over single degrees of freedom (gear, mimic)
+///   coupling 1      Σ_k coefficient_k ν_k over single degrees of freedom (gear, mimic), as link rows: ν_k is the
+///                   dual row of S_k applied to the acceleration of the body less that of its parent
 ///   general m       Σ_k K_k a_k, user blocks in body axes about each body's frame origin
 struct Constraint {
   enum class Kind : std::uint8_t {
@@ -98,13 +101,17 @@ struct Model {
 [[nodiscard]] Index dof_count(JointType t);
 [[nodiscard]] std::string_view name(JointType t);
 [[nodiscard]] std::string_view name(Constraint::Kind k);
-/// Number of rows of a constraint in this model.
+/// Number of rows of a constraint in this model. @throws ModelError when it is on a joint that does not exist.
 [[nodiscard]] Index row_count(const Model& model, const Constraint& c);
 
-/// Checks positive mass, positive definite inertia and the triangle inequality of a body, unit axes, finite numbers.
-/// A massless body (mass and inertia zero) passes here; `validate` decides whether M stays regular.
+/// Checks positive mass, positive definite inertia and the triangle inequality of a body, unit axes, proper rotations,
+/// finite numbers, joint data of one entry per degree of freedom. Unit lengths, orthogonality, symmetry and the triangle
+/// inequality hold up to 30 ε · 3 of the largest entry. A massless body (mass and inertia zero) passes here; `validate`
+/// decides whether M stays regular. @throws ModelError naming file, body, value, unit and what is accepted.
 void validate_body(const Body& body, const std::string& file);
-/// Checks the whole model; massless bodies only where armature or massive descendants keep M regular.
+/// Checks the whole model: bodies, distinct names, constraints, and that M is regular in general position although some
+/// bodies are massless (armature or massive descendants keep it so). The latter is decided by the pivots of M in Quad at
+/// the neutral and at one other fixed configuration, only when a massless body lacks armature. @throws ModelError.
 void validate(const Model& model, const std::string& file);
 
 /// The neutral configuration: zeros, unit quaternions.
