@@ -22,7 +22,7 @@ struct Scene {
   Damping<double> damping;            ///< R⁻¹ over all rows of the model; zero when the scene gives none
   Assembly assembly;                  ///< how the loops were closed; q equals `q` above
   bool has_loops = false;             ///< some constraint is marked `loop`
-  bool provisional_pose = false;      ///< the pose was made by hand, not recorded: `pose: provisional`
+  bool provisional_pose = false;      ///< the pose stands in for one that is not recorded: `pose: provisional`
   bool has_ground = false;
   double ground_height = 0;           ///< z of the ground plane [m]
   double ground_friction = -1;        ///< Coulomb coefficient; negative: not given
