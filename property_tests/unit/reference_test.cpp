@@ -1,9 +1,7 @@
 // The references against closed forms, and against each other.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <random>
-
+#include "property_tests/unit/reference_cases.h"
 #include "reference/definition.h"
 #include "reference/kkt_cholmod.h"
 #include "reference/maximal.h"
@@ -13,110 +11,7 @@
 namespace delassus::reference {
 namespace {
 
-using Matrix = MatrixX<double>;
-using Vector = VectorX<double>;
-
-struct Case {
-  Problem<double> problem;
-  Damping<double> damping;
-};
-
-/// max_i |x_i − y_i| / (eps · bound_i); a zero bound demands equality.
-double ratio(const VectorX<Quad>& x, const VectorX<Quad>& y, const Vector& bound, double eps) {
-  double worst = 0;
-  for (Index i = 0; i < x.size(); ++i) {
-    const double error = static_cast<double>(abs(x[i] - y[i]));
-    if (error == 0) continue;
-    const double r = bound[i] > 0 ? error / (eps * bound[i]) : std::numeric_limits<double>::infinity();
-    if (!(r <= worst)) worst = r;
-  }
-  return worst;
-}
-
-template <class To, class From> MatrixX<To> convert(const MatrixX<From>& X) {
-  MatrixX<To> Y(X.rows(), X.cols());
-  for (Index j = 0; j < X.cols(); ++j)
-    for (Index i = 0; i < X.rows(); ++i) Y(i, j) = scalar_cast<To>(X(i, j));
-  return Y;
-}
-
-// ---- random problems -------------------------------------------------------------------------------------------
-
-/// Dyadic numbers of few bits, so that exact arithmetic stays small.
-class Dice {
- public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  Index integer(Index low, Index high) { return low + static_cast<Index>(engine_() % static_cast<unsigned>(high - low + 1)); }
-  double number() { return static_cast<double>(integer(-8, 8)) / 4; }
-  Vector6<double> vector() {
-    Vector6<double> v;
-    for (Index i = 0; i < 6; ++i) v[i] = number();
-    return v;
-  }
-  Vector3<double> point() { return {number(), number(), number()}; }
-
- private:
-  std::mt19937 engine_;
-};
-
-/// Columns that are linearly independent by construction: entry c of column c is 4 or more in excess of the others.
-void fill_joint(Dice& dice, Problem<double>& p, Index body) {
-  const Structure& s = *p.structure;
-  for (Index k = s.first_dof[body]; k < s.first_dof[body + 1]; ++k) {
-    p.S[k] = dice.vector();
-    p.S[k][(k - s.first_dof[body] + body) % 6] += 16;
-  }
-}
-
-Matrix6<double> random_inertia(Dice& dice, double mass) {
-  Matrix3<double> I = Matrix3<double>::Zero();
-  for (int axis = 0; axis < 3; ++axis) I(axis, axis) = mass * static_cast<double>(dice.integer(5, 8)) / 8;
-  return spatial_inertia<double>(mass, dice.point(), I);
-}
-
-/// Tree of `bodies`, `loops` two-body constraints (K general, not antisymmetric), one three-body constraint, joint rows.
-Case random_case(unsigned seed, Index bodies, Index loops, double smallest_damping = 0.25) {
-  Dice dice(seed);
-  auto s = std::make_shared<Structure>();
-  for (Index i = 0; i < bodies; ++i) s->add_body(i == 0 ? ground : dice.integer(std::max<Index>(-1, i - 3), i - 1), dice.integer(1, 3));
-  for (Index e = 0; e < loops; ++e) {
-    const Index one = dice.integer(0, bodies - 1), other = dice.integer(0, bodies - 1);
-    s->add_link_constraint(dice.integer(1, 3), one == other ? std::vector<Index>{one} : std::vector<Index>{one, other});
-  }
-  if (bodies >= 3) s->add_link_constraint(2, {0, bodies / 2, bodies - 1});
-  s->add_joint_constraint(2, bodies - 1);
-  s->add_joint_constraint(1, 0);
-  Case c{Problem<double>(s), Damping<double>::uniform(s->rows, 0)};
-  for (Index i = 0; i < bodies; ++i) {
-    fill_joint(dice, c.problem, i);
-    c.problem.H[i] = random_inertia(dice, static_cast<double>(dice.integer(1, 8)) / 2);
-  }
-  for (auto& k : c.problem.K) k = dice.vector();
-  for (auto& k : c.problem.joint_K) k = dice.number();
-  for (auto& a : c.problem.armature) a = static_cast<double>(dice.integer(0, 2)) / 4;
-  for (auto& r : c.damping.diagonal) r = smallest_damping * static_cast<double>(dice.integer(1, 4));
-  return c;
-}
-
-/// Replaces the damping of the first link constraint by a full block B Bᵀ + 1.
-void add_block(Case& c, unsigned seed) {
-  Dice dice(seed);
-  const auto& e = c.problem.structure->link_constraints.front();
-  Matrix B(e.rows, e.rows);
-  for (Index j = 0; j < e.rows; ++j)
-    for (Index i = 0; i < e.rows; ++i) B(i, j) = dice.number();
-  for (Index r = 0; r < e.rows; ++r) c.damping.diagonal[static_cast<std::size_t>(e.row + r)] = 0;
-  c.damping.blocks.push_back({e.row, B * B.transpose() + Matrix::Identity(e.rows, e.rows)});
-}
-
-Matrix random_right_side(unsigned seed, Index rows) {
-  Dice dice(seed);
-  Matrix x(rows, 1);
-  for (Index i = 0; i < rows; ++i) x(i, 0) = dice.number();
-  return x;
-}
-
-Vector rounded(const MatrixX<Quad>& x) { return convert<double>(x).col(0); }
+using namespace cases;
 
 // ---- closed forms ----------------------------------------------------------------------------------------------
 
@@ -339,70 +234,6 @@ TEST(Reference, MasslessBodies) {
   for (auto& a : c.problem.armature) a = 0;
   for (const auto& reference : references()) EXPECT_THROW((void)reference.apply(c.problem, c.damping, x), std::runtime_error) << reference.name;
   EXPECT_FALSE(kkt_cholmod_trusts(c.problem, c.damping));
-}
-
-// ---- the bounds of the verdict ---------------------------------------------------------------------------------
-
-/// Every number changed by a relative ±ε.
-Case perturbed(Case c, double epsilon, unsigned seed) {
-  std::mt19937 engine(seed);
-  const auto change = [&](double& x) { x *= engine() % 2 ? 1 + epsilon : 1 - epsilon; };
-  for (auto& s : c.problem.S) for (Index i = 0; i < 6; ++i) change(s[i]);
-  for (auto& k : c.problem.K) for (Index i = 0; i < 6; ++i) change(k[i]);
-  for (auto& h : c.problem.H)
-    for (Index j = 0; j < 6; ++j)
-      for (Index i = j; i < 6; ++i) {
-        change(h(i, j));
-        h(j, i) = h(i, j);
-      }
-  for (auto& k : c.problem.joint_K) change(k);
-  for (auto& a : c.problem.armature) change(a);
-  for (auto& r : c.damping.diagonal) change(r);
-  return c;
-}
-
-TEST(Sensitivity, CoversChangesOfTheData) {
-  constexpr double epsilon = 0x1p-40;  // far above Quad's roundoff, far below one
-  double worst = 0;
-  for (unsigned seed = 1; seed <= 8; ++seed) {
-    const Case c = random_case(seed, 5, 2);
-    const Matrix x = random_right_side(seed, c.problem.structure->rows);
-    const Sensitivity bounds(c.problem, c.damping);
-    const VectorX<Quad> a = references()[0].apply(c.problem, c.damping, x).col(0), f = bounds.solve(x.col(0));
-    const Vector apply_bound = bounds.apply_sensitivity(x.col(0)), solve_bound = bounds.solve_sensitivity(x.col(0), rounded(f));
-    const Vector norm_bound = bounds.solve_normwise(x.col(0), rounded(f));
-    EXPECT_TRUE((solve_bound.array() <= norm_bound.array()).all());
-    for (unsigned draw = 1; draw <= 4; ++draw) {
-      const Case other = perturbed(c, epsilon, 100 * seed + draw);
-      const double apply_ratio = ratio(references()[0].apply(other.problem, other.damping, x).col(0), a, apply_bound, epsilon);
-      const double solve_ratio = ratio(references()[0].solve(other.problem, other.damping, x).col(0), f, solve_bound, epsilon);
-      EXPECT_LT(apply_ratio, 3.1);  // |δJ| ≤ 2ε J_abs, |δM| ≤ 3ε M_abs
-      EXPECT_LT(solve_ratio, 3.1);
-      worst = std::max({worst, apply_ratio, solve_ratio});
-    }
-  }
-  EXPECT_GT(worst, 1.0 / 64);  // the bound is not far above what happens
-}
-
-/// λ = R a − R J M_R⁻¹ Jᵀ R a in double: within its own bound, and outside that of the data.
-TEST(Sensitivity, DirectFormulaIsAmplified) {
-  double beyond_data = 0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    Case c = random_case(seed, 6, 1);
-    c.damping = Damping<double>::uniform(c.problem.structure->rows, 0x1p-30);
-    const Vector a = random_right_side(seed, c.problem.structure->rows).col(0);
-    const auto d = dense(c.problem, c.damping);
-    const Matrix R = Matrix::Identity(a.size(), a.size()) * 0x1p30;
-    const Matrix MR = d.M + d.J.transpose() * R * d.J;
-    const Matrix rate = PivotedLdlt<double>(MR).solve(d.J.transpose() * (R * a));
-    const Matrix direct = R * (a - d.J * rate.col(0));
-    const Sensitivity bounds(c.problem, c.damping);
-    const VectorX<Quad> exact = bounds.solve(a);
-    const VectorX<Quad> computed = convert<Quad>(direct).col(0);
-    EXPECT_LT(ratio(computed, exact, bounds.solve_amplified(a), unit_roundoff<double>), 30) << seed;
-    beyond_data = std::max(beyond_data, ratio(computed, exact, bounds.solve_sensitivity(a, rounded(exact)), unit_roundoff<double>));
-  }
-  EXPECT_GT(beyond_data, 30);
 }
 
 // ---- zeros -----------------------------------------------------------------------------------------------------
