@@ -55,11 +55,6 @@ template <class T> const char* why_not(Function f, const OperatorRow& op, const 
 template const char* why_not<double>(Function, const OperatorRow&, const Case&);
 template const char* why_not<Rational>(Function, const OperatorRow&, const Case&);
 
-template <class T> const char* why_not_both(const OperatorRow& op, const Case& c) {
-  const char* reason = why_not<T>(Function::apply, op, c);
-  return reason ? reason : why_not<T>(Function::solve, op, c);
-}
-
 template <class T, Function F> Verdict symmetric(const OperatorRow& op, const Case& c) {
   const auto [p, d] = numbers<T>(c);
   const Route<T> route(op, p, d);
@@ -128,16 +123,19 @@ template <class T, Function F> Verdict is_definition(const OperatorRow& op, cons
 }
 
 template <class T> Verdict round_trip(const OperatorRow& op, const Case& c) {
+  using W = Wide<T>;
   const auto [p, d] = numbers<T>(c);
   const Route<T> route(op, p, d);
   const MatrixX<T> x = vectors<T>(c.rows(), 2, c.seed);
-  const MatrixX<T> a = route.narrow(Function::apply, x);
-  return agree<T>(route(Function::solve, a), converted<Wide<T>>(x), bound_name(Function::solve, op),
-                  [&]() -> MatrixX<Quad> {
+  const MatrixX<T> a = op.applies ? route.narrow(Function::apply, x)
+                                  : narrowed<T>(times<W>(definition<T>(Function::apply, c), converted<W>(x)));
+  return agree<T>(route(Function::solve, a), converted<W>(x), bound_name(Function::solve, op), [&]() -> MatrixX<Quad> {
     if constexpr (ScalarTraits<T>::exact) return {};
-    else  // the error of solve, and |A⁻¹| times the error of apply
+    else {  // the error of solve, and |A⁻¹| times the error of A x
+      const MatrixX<Quad> of_a = op.applies ? error_bound(Function::apply, op, c, x) : magnitude(converted<Quad>(a));
       return error_bound(Function::solve, op, c, a) +
-             times<Quad>(magnitude(definition<double>(Function::solve, c)), error_bound(Function::apply, op, c, x));
+             times<Quad>(magnitude(definition<double>(Function::solve, c)), of_a);
+    }
   });
 }
 
@@ -174,7 +172,6 @@ template <class T> Verdict resolvent(const OperatorRow& op, const Case& c) {
   template Verdict linear<T, Function::solve>(const OperatorRow&, const Case&);             \
   template Verdict is_definition<T, Function::apply>(const OperatorRow&, const Case&);      \
   template Verdict is_definition<T, Function::solve>(const OperatorRow&, const Case&);      \
-  template const char* why_not_both<T>(const OperatorRow&, const Case&);                    \
   template Verdict round_trip<T>(const OperatorRow&, const Case&);                          \
   template Verdict resolvent<T>(const OperatorRow&, const Case&);
 DELASSUS_LAWS(double)

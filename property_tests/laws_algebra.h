@@ -12,8 +12,6 @@ template <class T> [[nodiscard]] const char* why_not(Function f, const OperatorR
 template <class T, Function F> [[nodiscard]] const char* why_not_function(const OperatorRow& op, const Case& c) {
   return why_not<T>(F, op, c);
 }
-/// Both functions are needed.
-template <class T> [[nodiscard]] const char* why_not_both(const OperatorRow& op, const Case& c);
 
 /// xᵀ(F y) = (F x)ᵀ y.
 template <class T, Function F> [[nodiscard]] Verdict symmetric(const OperatorRow& op, const Case& c);
@@ -23,7 +21,7 @@ template <class T, Function F> [[nodiscard]] Verdict positive(const OperatorRow&
 template <class T, Function F> [[nodiscard]] Verdict linear(const OperatorRow& op, const Case& c);
 /// F e_j and F x by the definition, up to 12 columns.
 template <class T, Function F> [[nodiscard]] Verdict is_definition(const OperatorRow& op, const Case& c);
-/// solve(apply(x)) = x.
+/// solve(apply(x)) = x; A x by the definition where the operator has no apply.
 template <class T> [[nodiscard]] Verdict round_trip(const OperatorRow& op, const Case& c);
 /// V_R(a + (R⁻¹ − R'⁻¹) V_R' a) = V_R' a.
 template <class T> [[nodiscard]] Verdict resolvent(const OperatorRow& op, const Case& c);
