@@ -119,6 +119,16 @@ VectorX<double> loop_errors(const Loops& loops, const VectorX<double>& q, Poses<
   return e;
 }
 
+/// Largest magnitude of a non-empty vector; NaN when an entry is NaN.
+double largest(const VectorX<double>& x) {
+  double out = 0;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (std::isnan(x[i])) return x[i];
+    out = std::max(out, std::fabs(x[i]));
+  }
+  return out;
+}
+
 /// Lengths that the linear errors of a constraint are differences of [m], at least the 1 of its angles [rad].
 double size_of(const Constraint& c, const Poses<double>& at) {
   const End<double> a = end_of(at, c.a), b = end_of(at, c.b);
@@ -132,9 +142,9 @@ void check_closed(const Loops& loops, const VectorX<double>& e, const Poses<doub
   Index row = 0;
   for (const Constraint& c : loops.model.constraints) {
     const Index m = row_count(loops.model, c);
-    const double worst = e.segment(row, m).cwiseAbs().maxCoeff(), accepted = 1e-9 * size_of(c, at);
+    const double worst = largest(e.segment(row, m)), accepted = 1e-9 * size_of(c, at);
     row += m;
-    if (e.segment(row - m, m).allFinite() && worst <= accepted) continue;
+    if (worst <= accepted) continue;
     std::ostringstream found, limit;
     found << "loop cannot be closed from this configuration, residual " << worst << " m or rad";
     limit << "at most " << accepted << " m or rad after Newton's method";
@@ -169,7 +179,7 @@ Assembly assemble(const Model& model, const VectorX<double>& q, const std::strin
   Problem<double> problem(loops.structure);
   Poses<double> at;
   VectorX<double> e = loop_errors(loops, q, at);
-  result.residual_before = result.residual = e.cwiseAbs().maxCoeff();
+  result.residual_before = result.residual = largest(e);
   double norm = e.norm();
   for (bool falling = true; falling && norm > 0;) {
     falling = false;
@@ -187,7 +197,7 @@ Assembly assemble(const Model& model, const VectorX<double>& q, const std::strin
       falling = true;
     }
   }
-  result.residual = e.cwiseAbs().maxCoeff();
+  result.residual = largest(e);
   poses(loops.model, result.q, at);
   check_closed(loops, e, at, file);
   return result;
