@@ -7,6 +7,7 @@
 
 #include "algorithms/status.h"
 #include "cli/commands.h"
+#include "property_tests/allocations.h"
 
 namespace {
 
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Exit codes: 0 ok, 1 a law is broken (or a solve did not end well), 2 bad input or usage, "
              "3 slower than the baseline.");
+  delassus::laws::count_allocations();
   Run run;
   for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_report}) add(app, run);
   try {
