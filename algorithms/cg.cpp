@@ -106,6 +106,6 @@ template <class T> Index Cg<T>::do_workspace(Index) const {
 template <class T> Index Cg<T>::do_bytes() const { return plan_.bytes() + factor_.bytes() + damping_.bytes(); }
 
 #define DELASSUS_INSTANTIATE(T) template class Cg<T>;
-DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
 
 }  // namespace delassus

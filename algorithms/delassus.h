@@ -94,7 +94,9 @@ struct OperatorRow {
   bool zero_damping;          ///< solve is defined when rows of R⁻¹ are zero (and A is regular)
   bool terminates_exactly;    ///< exact in exact arithmetic
   ErrorClass apply_error, solve_error;
-  std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>> makers;
+  std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>,
+             Maker<PrimeField>>
+      makers;  ///< nullptr where a scalar is not served
 
   template <class T> [[nodiscard]] std::unique_ptr<Operator<T>> make() const { return std::get<Maker<T>>(makers)(); }
 };

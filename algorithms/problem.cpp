@@ -281,12 +281,23 @@ template <class T> template <class U> Damping<U> Damping<T>::cast() const {
 #define DELASSUS_CAST(T, U)                        \
   template Problem<U> Problem<T>::cast<U>() const; \
   template Damping<U> Damping<T>::cast<U>() const;
+#define DELASSUS_CAST_FROM_DOUBLE(U) DELASSUS_CAST(double, U)
+#define DELASSUS_CAST_TO_DOUBLE(T) DELASSUS_CAST(T, double)
 #define DELASSUS_INSTANTIATE(T) \
   template struct Problem<T>;   \
-  template struct Damping<T>;   \
-  DELASSUS_CAST(T, double) DELASSUS_CAST(T, float) DELASSUS_CAST(T, Quad) DELASSUS_CAST(T, Counted) DELASSUS_CAST(T, Rational)
-DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+  template struct Damping<T>;
+DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
+template struct Problem<PrimeField>;
+template void Damping<PrimeField>::multiply(const VectorX<PrimeField>&, VectorX<PrimeField>&) const;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_CAST_FROM_DOUBLE)
+DELASSUS_CAST_TO_DOUBLE(float)
+DELASSUS_CAST_TO_DOUBLE(Quad)
+DELASSUS_CAST_TO_DOUBLE(Rational)
+DELASSUS_CAST(Quad, Rational)
+DELASSUS_CAST(Rational, Quad)
 #undef DELASSUS_INSTANTIATE
+#undef DELASSUS_CAST_TO_DOUBLE
+#undef DELASSUS_CAST_FROM_DOUBLE
 #undef DELASSUS_CAST
 
 }  // namespace delassus

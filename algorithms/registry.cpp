@@ -10,9 +10,13 @@ namespace {
 
 template <template <class> class Op, class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<Op<T>>(); }
 
-template <template <class> class Op>
-constexpr std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>> makers() {
-  return {make<Op, double>, make<Op, float>, make<Op, Quad>, make<Op, Counted>, make<Op, Rational>};
+template <template <class> class Op> constexpr decltype(OperatorRow::makers) ordered_makers() {
+  return {make<Op, double>, make<Op, float>, make<Op, Quad>, make<Op, Counted>, make<Op, Rational>, nullptr};
+}
+template <template <class> class Op> constexpr decltype(OperatorRow::makers) makers() {
+  auto all = ordered_makers<Op>();
+  std::get<Maker<PrimeField>>(all) = make<Op, PrimeField>;
+  return all;
 }
 
 }  // namespace
@@ -51,7 +55,7 @@ const std::vector<OperatorRow>& operators() {
       {.name = "cg", .summary = "conjugate gradients on aba_sweep",
        .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
        .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
-       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .makers = makers<Cg>()},
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .makers = ordered_makers<Cg>()},
   };
   return table;
 }

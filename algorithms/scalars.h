@@ -2,7 +2,8 @@
 //   double    the product              float    half the memory
 //   Quad      __float128, 113 bits: tells a bug from rounding
 //   Counted   double that counts its operations (per thread)
-//   Rational  exact, GMP: an identity holds or it does not
+//   Rational    exact, GMP: an identity holds or it does not
+//   PrimeField  exact modulo 2⁶¹ − 1, constant size: identities at thousands of bodies (not ordered: no cg)
 #pragma once
 
 #include <gmpxx.h>
@@ -116,6 +117,49 @@ struct Rational {
 inline Rational abs(const Rational& x) { return Rational(mpq_class(::abs(x.v))); }
 inline bool isfinite(const Rational&) { return true; }
 
+/// The integers modulo p = 2⁶¹ − 1. Doubles are dyadic rationals and 2 is invertible, so the map from doubles is a ring
+/// homomorphism: an identity between rational functions that holds for the doubles holds here. A wrong identity of degree
+/// d survives a random evaluation with probability below d/p (Schwartz–Zippel). Division by zero gives zero; a recursion
+/// sees it before as a pivot that is not usable.
+struct PrimeField {
+  static constexpr std::uint64_t p = (std::uint64_t{1} << 61) - 1;
+  std::uint64_t v = 0;
+  PrimeField() = default;
+  PrimeField(int x) : v(x >= 0 ? static_cast<std::uint64_t>(x) : p - static_cast<std::uint64_t>(-x)) {}
+  PrimeField(double x) {  // x = m 2^e, and 2^61 = 1
+    int e = 0;
+    const double m = std::frexp(x, &e);
+    const auto integer = static_cast<std::int64_t>(std::ldexp(m, 53));
+    v = (integer < 0 ? p - static_cast<std::uint64_t>(-integer) % p : static_cast<std::uint64_t>(integer)) % p;
+    const int shift = (((e - 53) % 61) + 61) % 61;
+    *this *= from(std::uint64_t{1} << shift);
+  }
+  static PrimeField from(std::uint64_t reduced) { PrimeField x; x.v = reduced; return x; }
+  explicit operator double() const { return static_cast<double>(v); }  ///< for printing only
+  PrimeField& operator+=(const PrimeField& o) { v += o.v; if (v >= p) v -= p; return *this; }
+  PrimeField& operator-=(const PrimeField& o) { v += p - o.v; if (v >= p) v -= p; return *this; }
+  PrimeField& operator*=(const PrimeField& o) {
+    const auto x = static_cast<unsigned __int128>(v) * o.v;
+    v = static_cast<std::uint64_t>(x & p) + static_cast<std::uint64_t>(x >> 61);
+    if (v >= p) v -= p;
+    return *this;
+  }
+  [[nodiscard]] PrimeField inverse() const {  // v^(p−2)
+    PrimeField result = from(1), base = *this;
+    for (std::uint64_t k = p - 2; k != 0; k >>= 1, base *= base)
+      if (k & 1) result *= base;
+    return result;
+  }
+  PrimeField& operator/=(const PrimeField& o) { return *this *= o.inverse(); }
+  friend PrimeField operator+(PrimeField a, const PrimeField& b) { return a += b; }
+  friend PrimeField operator-(PrimeField a, const PrimeField& b) { return a -= b; }
+  friend PrimeField operator*(PrimeField a, const PrimeField& b) { return a *= b; }
+  friend PrimeField operator/(PrimeField a, const PrimeField& b) { return a /= b; }
+  friend PrimeField operator-(const PrimeField& a) { return from(a.v == 0 ? 0 : p - a.v); }
+  friend bool operator==(const PrimeField& a, const PrimeField& b) { return a.v == b.v; }
+};
+inline bool isfinite(const PrimeField&) { return true; }
+
 /// What a recursion may ask of its scalar beyond + − · /.
 template <class T> struct ScalarTraits {
   static constexpr bool exact = false;
@@ -126,6 +170,11 @@ template <> struct ScalarTraits<Rational> {
   static constexpr bool exact = true;
   static bool usable_pivot(const Rational& d) { return d > Rational(0); }
   static Rational nan() { return {}; }
+};
+template <> struct ScalarTraits<PrimeField> {
+  static constexpr bool exact = true;
+  static bool usable_pivot(const PrimeField& d) { return d.v != 0; }
+  static PrimeField nan() { return {}; }
 };
 
 /// Unit roundoff of a scalar; 0 where it is exact.
@@ -147,7 +196,9 @@ template <class To, class From> [[nodiscard]] To scalar_cast(const From& x) {
 }
 
 /// Every scalar the library is instantiated for; used only for explicit instantiations.
-#define DELASSUS_FOR_EACH_SCALAR(X) X(double) X(float) X(::delassus::Quad) X(::delassus::Counted) X(::delassus::Rational)
+#define DELASSUS_FOR_EACH_ORDERED_SCALAR(X) \
+  X(double) X(float) X(::delassus::Quad) X(::delassus::Counted) X(::delassus::Rational)
+#define DELASSUS_FOR_EACH_SCALAR(X) DELASSUS_FOR_EACH_ORDERED_SCALAR(X) X(::delassus::PrimeField)
 
 }  // namespace delassus
 
@@ -176,6 +227,16 @@ template <> struct NumTraits<delassus::Rational> : GenericNumTraits<delassus::Ra
   using Nested = delassus::Rational;
   using Literal = double;
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 6, AddCost = 150, MulCost = 100 };
+  static Real epsilon() { return {0}; }
+  static Real dummy_precision() { return {0}; }
+  static int digits10() { return 0; }
+};
+template <> struct NumTraits<delassus::PrimeField> : GenericNumTraits<delassus::PrimeField> {
+  using Real = delassus::PrimeField;
+  using NonInteger = delassus::PrimeField;
+  using Nested = delassus::PrimeField;
+  using Literal = double;
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 2, MulCost = 6 };
   static Real epsilon() { return {0}; }
   static Real dummy_precision() { return {0}; }
   static int digits10() { return 0; }
