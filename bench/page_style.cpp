@@ -10,7 +10,7 @@ const char* page_style() {
 --t0:#55616d;--t1:#404a54;--t2:#333c45;--edge:#9fb0c0;--contact:#ff9a5c;--loop:#b794ff}}
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
-body{margin:0 auto;max-width:1120px;padding:1.2rem 1rem 3rem;font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:var(--ink);background:var(--paper)}
+body{margin:0 auto;max-width:1240px;padding:1.2rem 1rem 3rem;font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;color:var(--ink);background:var(--paper)}
 h1{font-size:1.7rem;line-height:1.2;margin:.2rem 0 .4rem}
 h2{font-size:1.25rem;margin:2.4rem 0 .5rem;padding-bottom:.2rem;border-bottom:1px solid var(--line)}
 h3{font-size:1.02rem;margin:0 0 .2rem}
@@ -34,6 +34,9 @@ th small,td small{font-weight:400;color:var(--soft)}
 thead th{border-bottom:2px solid var(--line)}
 th:first-child,td:first-child{text-align:left}
 td.text,th.text{text-align:left;white-space:normal;min-width:13rem;vertical-align:top}
+th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}
+.matrix th{white-space:normal}
+.matrix th:first-child{white-space:nowrap}
 caption{text-align:left;font-weight:600;padding:.2rem .55rem .3rem 0;font-size:.92rem}
 .good{color:var(--good)}
 .bad{color:var(--bad);font-weight:700}
@@ -43,9 +46,9 @@ figure{margin:0;min-width:0}
 figcaption{font-size:.86rem;color:var(--soft)}
 svg{display:block;width:100%;height:auto}
 svg.plot text,svg.plot tspan{font-family:inherit}
-.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,360px) minmax(0,1fr);gap:.4rem 1.6rem;align-items:start}
+.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,290px) minmax(0,1fr);gap:.4rem 1.4rem;align-items:start}
 .scene .wide{margin-bottom:.2rem}
-@media (max-width:820px){.scene{grid-template-columns:minmax(0,1fr)}}
+@media (max-width:1160px){.scene figure{max-width:420px}.scene{grid-template-columns:minmax(0,1fr)}}
 .picture path{fill:none;stroke:var(--edge);stroke-width:.8;stroke-linejoin:round;vector-effect:non-scaling-stroke}
 .picture .t0{fill:var(--t0)}.picture .t1{fill:var(--t1)}.picture .t2{fill:var(--t2)}
 .picture .ground{stroke:var(--line);stroke-width:.7}
@@ -56,7 +59,7 @@ svg.plot text,svg.plot tspan{font-family:inherit}
 .picture .loop{stroke:var(--loop);stroke-width:1.4;fill:var(--paper);stroke-dasharray:none}
 .picture path.loop[d*="L"]{stroke-dasharray:4 2.5}
 .picture .scale{stroke:var(--soft);stroke-width:1}
-.picture text{fill:var(--soft);font-size:12px;stroke:none}
+.picture text.scale{fill:var(--soft);font-size:12px;stroke:none}
 .legend{list-style:none;display:flex;flex-wrap:wrap;gap:.2rem 1.4rem;padding:0;margin:.4rem 0 1rem;font-size:.88rem}
 .legend li{display:flex;align-items:center;gap:.4rem}
 svg.key{width:2rem;flex:none}

@@ -45,7 +45,7 @@ std::string failures(const Results& r) {
     for (const Cell& c : scene.cells)
       for (const LawResult& l : c.laws)
         if (l.skipped.empty() && !l.passed)
-          s += "<li><code>" + escape(c.op + " · " + scene.name + " · " + l.law) + "</code>: ratio " + three_digits(l.ratio) + "</li>";
+          s += "<li><code>" + escape(c.op + " · " + scene.name + " · " + l.law) + "</code>: ratio " + three_digits(l.ratio) + (l.note.empty() ? "" : ", " + escape(l.note)) + "</li>";
   return s.empty() ? "" : "<h3 class=\"bad\">Laws that failed</h3><ul class=\"small\">" + s + "</ul>";
 }
 

@@ -121,6 +121,10 @@ std::string text_table(const Results& r) {
            (!w ? "not checked" : (c.failed() ? format("%d FAILED, ", c.failed()) : std::string("hold, ")) + "worst " + three_digits(w->ratio)) +
            "\n";
     }
+  for (const SceneResult& scene : r.scenes)
+    for (const Cell& c : scene.cells)
+      for (const LawResult& l : c.laws)
+        if (!l.passed) s += "FAILED  " + scene.name + "  " + c.op + "  " + l.law + "  ratio " + three_digits(l.ratio) + "  " + l.note + "\n";
   return s;
 }
 

@@ -50,7 +50,9 @@ json count(std::int64_t n) { return n < 0 ? json(nullptr) : json(n); }
 
 json to_json(const LawResult& l) {
   if (!l.skipped.empty()) return {{"law", l.law}, {"skipped", l.skipped}};
-  return {{"law", l.law}, {"ratio", l.ratio}, {"passed", l.passed}};
+  json j = {{"law", l.law}, {"ratio", std::isfinite(l.ratio) ? json(l.ratio) : json("infinity")}, {"passed", l.passed}};
+  if (!l.note.empty()) j["note"] = l.note;
+  return j;
 }
 
 json to_json(const OperatorInfo& o) {

@@ -28,6 +28,7 @@ struct LawResult {
   double ratio = 0;        ///< error / (eps · bound); a law holds below 30
   bool passed = true;
   std::string skipped;     ///< why the law does not apply here; empty: it was checked
+  std::string note;        ///< what went wrong when it is not a matter of size
 };
 
 /// One operator on one problem.

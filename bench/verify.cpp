@@ -15,7 +15,7 @@ namespace {
 
 LawResult outcome(const laws::LawRow& law, const OperatorRow& op, const laws::Case& c) {
   const laws::Outcome o = laws::check(law, op, c);
-  LawResult r{std::string(law.name), o.verdict.ratio, !o.failed(), o.skipped ? o.skipped : ""};
+  LawResult r{std::string(law.name), o.verdict.ratio, !o.failed(), o.skipped ? o.skipped : "", o.verdict.note};
   return r;
 }
 
@@ -28,7 +28,7 @@ void verify_one(const Scene& scene, double time_limit, SceneResult& result) {
         result.cells[i].laws.push_back(outcome(law, operators()[i], c));
       else
         result.cells[i].laws.push_back({std::string(law.name), 0, true,
-                                        format("time limit of %.0f s per scene reached", time_limit)});
+                                        format("time limit of %.0f s per scene reached", time_limit), ""});
     }
 }
 

@@ -68,7 +68,7 @@ json line_json(std::string_view law, const Line& l) {
 }
 
 void print_line(std::string_view law, const Line& l) {
-  const std::string name = bench::pad_right(std::string(law), 28);
+  const std::string name = bench::pad_right(std::string(law), 34);
   if (!l.checked) {
     std::printf("  - %s not checked: %s\n", name.c_str(), l.why_skipped.c_str());
     return;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/scene_facts.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -45,9 +46,21 @@ json laws_json() {
   return out;
 }
 
+/// Sizes and constraints of a scene in words, or what is wrong with its file.
+json scene_row(const std::string& name) {
+  try {
+    const Scene scene = open_scene(name);
+    const auto s = structure_of(scene.model);
+    const std::string sizes = bench::format("%3lld dofs, %3lld rows: ", static_cast<long long>(s->dofs()), static_cast<long long>(s->rows));
+    return {{"name", name}, {"summary", sizes + bench::constraint_summary(scene.model)}, {"dof", s->dofs()}, {"rows", s->rows}};
+  } catch (const ModelError& e) {
+    return {{"name", name}, {"summary", std::string("cannot be opened: ") + e.what()}};
+  }
+}
+
 json scenes_json() {
   json out = json::array();
-  for (const std::string& s : scene_names()) out.push_back({{"name", s}, {"summary", "scene file"}});
+  for (const std::string& s : scene_names()) out.push_back(scene_row(s));
   out.push_back({{"name", "swimmer:N"}, {"summary", "chain of N links in the plane, two contacts per link; N ≥ 1"}});
   return out;
 }

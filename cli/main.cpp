@@ -16,6 +16,19 @@ int fail(const std::string& message, int code) {
   return code;
 }
 
+/// Whether the first argument is meant as a subcommand but is none.
+bool unknown_subcommand(const CLI::App& app, const std::string& first) {
+  const auto known = app.get_subcommands([&](const CLI::App* c) { return c->get_name() == first; });
+  return !first.empty() && first[0] != '-' && known.empty();
+}
+
+std::string subcommand_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + c->get_name();
+  return names;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -27,6 +40,8 @@ int main(int argc, char** argv) {
   delassus::laws::count_allocations();
   Run run;
   for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_report}) add(app, run);
+  if (argc > 1 && unknown_subcommand(app, argv[1]))
+    return fail("there is no subcommand " + std::string(argv[1]) + " (accepted: " + subcommand_names(app) + ")", bad_input);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
