@@ -60,13 +60,10 @@ template <class T> void poison(Ref<T> x) {
   x.setConstant(ScalarTraits<T>::nan());
 }
 
+// NaN or infinity, given or met on the way, is a status and never a number. An iterate that did not converge is kept.
 template <class T> Report finished(Report report, ConstRef<T> in, Ref<T> out) {
-  if (report.status == Status::not_converged && all_finite<T>(out)) return report;
-  if (!report.ok() || !all_finite<T>(out)) {
-    if (report.ok()) report.status = Status::not_finite;
-    if (!all_finite<T>(in)) report.status = Status::not_finite;
-    poison<T>(out);
-  }
+  if (!all_finite<T>(in) || (report.ok() && !all_finite<T>(out))) report.status = Status::not_finite;
+  if (!report.ok() && report.status != Status::not_converged) poison<T>(out);
   return report;
 }
 }  // namespace
