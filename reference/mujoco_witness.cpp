@@ -57,6 +57,10 @@ struct PairRow {
   Vector3<double> u;
 };
 
+bool between_frames(Kind kind) {
+  return kind != Kind::coupling && kind != Kind::general && kind != Kind::joint_friction && kind != Kind::joint_lock;
+}
+
 /// Rows in the order of model.h.
 std::vector<PairRow> pair_rows(Kind kind, const WorldFrame& a, const WorldFrame& b) {
   const auto turn = [&](Index k) { return PairRow{true, a.rotation.col(k)}; };
@@ -214,8 +218,8 @@ Matrix MujocoWitness::State::frame_rows(const Constraint& c) const {
   const std::vector<PairRow> rows = pair_rows(c.kind, a, b);
   Matrix out(static_cast<Index>(rows.size()), nv());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const PairRow& r = rows[k];
-    out.row(static_cast<Index>(k)) = r.angular ? r.u.transpose() * (turning_a - turning_b) : r.u.transpose() * (moving_a - moving_b);
+    const Matrix3X rate = rows[k].angular ? turning_a - turning_b : moving_a - moving_b;
+    out.row(static_cast<Index>(k)) = rows[k].u.transpose() * rate;
   }
   return out;
 }
@@ -243,8 +247,9 @@ void MujocoWitness::State::set_rows() {
   J.resize(rows, nv());
   rows = connected = 0;
   for (const Constraint& c : model.constraints) {
-    const bool terms = c.kind == Kind::coupling || c.kind == Kind::general || c.kind == Kind::joint_friction || c.kind == Kind::joint_lock;
-    const Matrix block = c.kind == Kind::point ? connect_rows(c, connected) : terms ? term_rows(c) : frame_rows(c);
+    const Matrix block = c.kind == Kind::point       ? connect_rows(c, connected)
+                         : between_frames(c.kind) ? frame_rows(c)
+                                                  : term_rows(c);
     J.middleRows(rows, block.rows()) = block;
     rows += block.rows();
     connected += c.kind == Kind::point ? 3 : 0;
@@ -262,7 +267,8 @@ void MujocoWitness::set(const VectorX<double>& q) {
   for (Index i = 0; i < bodies; ++i) s.set_joint(i, q.data() + s.model.first_q[i]);
   mj_fwdPosition(s.compiled.get(), s.data.get());
   for (int k = 0; k < mjNWARNING; ++k)
-    if (s.data->warning[k].number != 0) throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(k, s.data->warning[k].lastinfo));
+    if (s.data->warning[k].number != 0)
+      throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(k, s.data->warning[k].lastinfo));
   s.T = Matrix::Zero(s.nv(), s.nv());
   for (Index i = 0; i < bodies; ++i) s.set_rates(i, q.data() + s.model.first_q[i]);
   s.set_rows();
