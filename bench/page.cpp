@@ -13,7 +13,7 @@ std::string verdict_cell(const Cell& cell) {
   const bool good = cell.failed() == 0;
   return std::string("<td class=\"") + (good ? "good" : "bad") + "\" title=\"" +
          escape(format("%d laws checked; worst: ", cell.checked()) + worst->law) + "\">" + (good ? "✓ " : "✗ ") +
-         three_digits(worst->ratio) + "</td>";
+         escape(ratio_text(worst->ratio)) + "</td>";
 }
 
 std::string time_cell(const Timing& t, bool mark) {
@@ -90,7 +90,7 @@ std::string matrix(const Results& r, const std::string& caption, Column phase) {
       for (const Cell& c : scene.cells)
         if ((c.time.*phase).measured()) best = std::min(best, (c.time.*phase).lowest);
     for (const Cell& c : scene.cells)
-      s += phase ? time_cell(c.time.*phase, (c.time.*phase).lowest == best) : verdict_cell(c);
+      s += phase ? time_cell(c.time.*phase, (c.time.*phase).lowest <= 1.05 * best) : verdict_cell(c);
     s += "</tr>";
   }
   return s + "</tbody></table></div>";
@@ -111,17 +111,17 @@ std::string summary_section(const Results& r) {
             failed ? "of " + std::to_string(r.checked()) + " law checks failed"
                    : std::to_string(r.checked()) + " law checks: " + std::to_string(r.operators.size()) +
                          " operators on " + std::to_string(r.scenes.size()) + " scenes");
-  s += fact(ratio < 0 ? "–" : three_digits(ratio), where);
+  s += fact(ratio < 0 ? "–" : escape(ratio_text(ratio)), where);
   s += largest_gap(r, apply_cost, "one application");
   s += largest_gap(r, first_solve_cost, "new configuration and one solve");
-  s += "</div><nav><a href=\"#overview\">Overview</a><a href=\"#size\">Cost against size</a><a href=\"#scenes\">Scenes</a>"
-       "<a href=\"#laws\">Laws</a><a href=\"#operators\">Operators</a><a href=\"#machine\">Reproduce</a></nav>";
+  s += "</div><nav><a href=\"#overview\">Overview</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
+       "<a href=\"#laws\">Laws</a> <a href=\"#operators\">Operators</a> <a href=\"#machine\">Reproduce</a></nav>";
   return s;
 }
 
 std::string overview_section(const Results& r) {
   return "<h2 id=\"overview\">Overview</h2><p>Times are the lowest of several batches in one run, in microseconds, one "
-         "core; the median is in each number's tooltip and in <code>results.json</code>. <b>Bold</b>: fastest of its row. "
+         "core; the median is in each number's tooltip and in <code>results.json</code>. <b>Bold</b>: fastest of its row, and what comes within 5 % of it. "
          "<em>update</em>: the numbers of a configuration; <em>apply</em>, <em>solve</em>: one vector.</p><div class=\"grid\">" +
          matrix(r, "Laws: worst error ratio (holds below 30)", nullptr) + matrix(r, "update [µs]", &Phases::update) +
          matrix(r, "apply [µs]", &Phases::apply) + matrix(r, "solve [µs]", &Phases::solve) + "</div>";

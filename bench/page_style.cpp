@@ -25,10 +25,10 @@ nav a{margin-right:1rem;white-space:nowrap}
 .facts{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:.6rem;margin:1rem 0}
 .facts div{background:var(--card);border:1px solid var(--line);border-radius:6px;padding:.5rem .7rem}
 .facts b{display:block;font-size:1.35rem;line-height:1.25;font-weight:650}
-.facts span{color:var(--soft);font-size:.84rem}
+.facts div>span{color:var(--soft);font-size:.84rem}
 .wide{overflow-x:auto;margin:.5rem 0 1rem;max-width:100%}
 table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums}
-th,td{padding:.2rem .55rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
+th,td{padding:.2rem .42rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
 th{font-weight:600;vertical-align:bottom}
 th small,td small{font-weight:400;color:var(--soft)}
 thead th{border-bottom:2px solid var(--line)}
@@ -46,7 +46,7 @@ figure{margin:0;min-width:0}
 figcaption{font-size:.86rem;color:var(--soft)}
 svg{display:block;width:100%;height:auto}
 svg.plot text,svg.plot tspan{font-family:inherit}
-.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,290px) minmax(0,1fr);gap:.4rem 1.4rem;align-items:start}
+.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,270px) minmax(0,1fr);gap:.4rem 1.2rem;align-items:start}
 .scene .wide{margin-bottom:.2rem}
 @media (max-width:1160px){.scene figure{max-width:420px}.scene{grid-template-columns:minmax(0,1fr)}}
 .picture path{fill:none;stroke:var(--edge);stroke-width:.8;stroke-linejoin:round;vector-effect:non-scaling-stroke}

@@ -36,7 +36,7 @@ std::string law_cell(const Worst& w) {
   if (w.checked == 0) return "<td class=\"soft\" title=\"" + escape(w.skipped) + "\">–</td>";
   return std::string("<td class=\"") + (w.passed ? "good" : "bad") + "\" title=\"" +
          escape(std::to_string(w.checked) + " scenes; worst: " + w.scene) + "\">" + (w.passed ? "✓ " : "✗ ") +
-         three_digits(w.ratio) + "</td>";
+         escape(ratio_text(w.ratio)) + "</td>";
 }
 
 std::string failures(const Results& r) {
@@ -45,7 +45,7 @@ std::string failures(const Results& r) {
     for (const Cell& c : scene.cells)
       for (const LawResult& l : c.laws)
         if (l.skipped.empty() && !l.passed)
-          s += "<li><code>" + escape(c.op + " · " + scene.name + " · " + l.law) + "</code>: ratio " + three_digits(l.ratio) + (l.note.empty() ? "" : ", " + escape(l.note)) + "</li>";
+          s += "<li><code>" + escape(c.op + " · " + scene.name + " · " + l.law) + "</code>: ratio " + escape(ratio_text(l.ratio)) + (l.note.empty() ? "" : ", " + escape(l.note)) + "</li>";
   return s.empty() ? "" : "<h3 class=\"bad\">Laws that failed</h3><ul class=\"small\">" + s + "</ul>";
 }
 

@@ -46,7 +46,7 @@ std::string verdict_line(const SceneResult& s) {
     if (const LawResult* w = c.worst(); w && !(w->ratio <= worst)) worst = w->ratio;
   }
   if (checked == 0) return "no law could be checked";
-  return format("%d checks, worst ratio ", checked) + three_digits(worst) +
+  return format("%d checks, worst ratio ", checked) + ratio_text(worst) +
          (failed ? format(", %d FAILED", failed) : std::string(", all hold"));
 }
 
@@ -118,13 +118,13 @@ std::string text_table(const Results& r) {
       s += pad_right(scene.name, 28) + pad_right(c.op, 17) + pad_left(std::to_string(scene.rows), 6) +
            pad_left(three_digits(c.time.update.lowest), 12) + pad_left(three_digits(c.time.apply.lowest), 11) +
            pad_left(solved ? three_digits(c.time.solve.lowest) : c.solve_status, 15) + "  " +
-           (!w ? "not checked" : (c.failed() ? format("%d FAILED, ", c.failed()) : std::string("hold, ")) + "worst " + three_digits(w->ratio)) +
+           (!w ? "not checked" : (c.failed() ? format("%d FAILED, ", c.failed()) : std::string("hold, ")) + "worst " + ratio_text(w->ratio)) +
            "\n";
     }
   for (const SceneResult& scene : r.scenes)
     for (const Cell& c : scene.cells)
       for (const LawResult& l : c.laws)
-        if (!l.passed) s += "FAILED  " + scene.name + "  " + c.op + "  " + l.law + "  ratio " + three_digits(l.ratio) + "  " + l.note + "\n";
+        if (!l.passed) s += "FAILED  " + scene.name + "  " + c.op + "  " + l.law + "  ratio " + ratio_text(l.ratio) + "  " + l.note + "\n";
   return s;
 }
 

@@ -29,6 +29,8 @@ std::string three_digits(double x) {
   return format("%.0f", x);
 }
 
+std::string ratio_text(double ratio) { return ratio > 0 && ratio < 0.001 ? "<0.001" : three_digits(ratio); }
+
 namespace {
 
 std::string with_prefix(std::int64_t n, const char* unit) {

@@ -11,6 +11,8 @@ namespace delassus::bench {
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 /// Three significant digits without exponent: 0.0123, 1.23, 123, 12300; `–` for NaN.
 [[nodiscard]] std::string three_digits(double x);
+/// An error ratio: three digits, `<0.001` below that, 0 for exact agreement.
+[[nodiscard]] std::string ratio_text(double ratio);
 /// A count with prefix: 950, 12.3 k, 1.23 M; `–` below zero.
 [[nodiscard]] std::string short_count(std::int64_t n);
 /// Bytes with prefix: 512 B, 12.3 kB, 1.23 MB (powers of 1000); `–` below zero.
