@@ -1,6 +1,7 @@
 // `delassus describe SCENE`: what a scene is made of, how it will be eliminated, what every operator will hold.
 #include <algorithm>
 #include <cstdio>
+#include <new>
 
 #include <CLI/CLI.hpp>
 
@@ -30,10 +31,15 @@ json plan_json(const Scene& scene, const Structure& structure, Matrix matrix) {
 json operators_json(const std::shared_ptr<const Structure>& structure) {
   json out = json::array();
   for (const OperatorRow& row : operators()) {
-    const auto op = row.make<double>();
-    op->analyze(structure);
-    out.push_back({{"name", row.name}, {"bytes", op->bytes()},
-                   {"workspace_bytes", op->workspace() * static_cast<Index>(sizeof(double))}});
+    json j = {{"name", row.name}, {"bytes", nullptr}, {"workspace_bytes", nullptr}};
+    try {
+      const auto op = row.make<double>();
+      op->analyze(structure);
+      j["bytes"] = op->bytes();
+      j["workspace_bytes"] = op->workspace() * static_cast<Index>(sizeof(double));
+    } catch (const std::bad_alloc&) {  // more than the machine has: the sizes stay null
+    }
+    out.push_back(j);
   }
   return out;
 }
@@ -103,9 +109,14 @@ void print_text(const json& j) {
     std::printf("  %s %-15s %s\n", e["called_for"].get<bool>() ? "+" : "-", e["name"].get<std::string>().c_str(),
                 e["why"].get<std::string>().c_str());
   std::printf("operators\n");
-  for (const json& o : j["operators"])
+  for (const json& o : j["operators"]) {
+    if (o["bytes"].is_null()) {
+      std::printf("  %-18s more memory than this machine has\n", o["name"].get<std::string>().c_str());
+      continue;
+    }
     std::printf("  %-18s %10s, workspace %s\n", o["name"].get<std::string>().c_str(),
                 bench::short_bytes(o["bytes"]).c_str(), bench::short_bytes(o["workspace_bytes"]).c_str());
+  }
   for (const json& note : j["notes"]) print_line("note", note);
 }
 
