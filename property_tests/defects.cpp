@@ -16,14 +16,14 @@ using namespace delassus;
 enum class Defect : int {
   none, relative_error, transposed_rows, negated, not_linear, numbering, joint_sign, no_armature, forgets_last_constraint,
   parallel_columns, first_update_stays, stale_damping, allocates, reads_workspace, no_empty_size, softens_hard_rows,
-  swallows_nan, ends
+  swallows_nan, never_converges, ends
 };
 
 constexpr const char* names[] = {
     "none", "relative error 1e-10", "two rows swapped", "negated", "adds |x|", "depends on numbering",
     "joint rows of the wrong sign", "forgets armature", "forgets the last constraint", "all columns like the first",
     "second update ignored", "update_damping ignored", "allocates", "reads the workspace", "refuses empty sizes",
-    "hard rows softened silently", "NaN becomes zero"};
+    "hard rows softened silently", "NaN becomes zero", "never converges"};
 
 /// dense_cholesky with a defect.
 template <class T> class Wrong final : public Operator<T> {
@@ -71,6 +71,10 @@ template <class T> class Wrong final : public Operator<T> {
 
   Report wrong(ConstRef<T> x, Ref<T> y, T* workspace, bool apply) const {
     if (defect_ == Defect::no_empty_size && x.size() == 0) return {Status::lost_pivot};
+    if (defect_ == Defect::never_converges && !apply) {
+      y.setZero();
+      return {Status::not_converged};
+    }
     auto in = in_.leftCols(x.cols());
     in = x;
     if (defect_ == Defect::swallows_nan)
@@ -97,7 +101,11 @@ template <class T> class Wrong final : public Operator<T> {
       case Defect::parallel_columns:
         for (Index k = 1; k < y.cols(); ++k) y.col(k) = y.col(0);
         break;
-      case Defect::allocates: free(malloc(static_cast<std::size_t>(8 + y.rows()))); break;
+      case Defect::allocates: {
+        void* volatile block = malloc(static_cast<std::size_t>(8 + y.rows()));
+        free(block);
+        break;
+      }
       case Defect::reads_workspace: y(0, 0) += workspace[0]; break;
       default: break;
     }
@@ -128,7 +136,9 @@ template <Defect D> OperatorRow row() {
   OperatorRow r = find_operator("dense_cholesky");
   r.name = names[static_cast<int>(D)];
   r.zero_damping = r.zero_damping && D != Defect::softens_hard_rows;
-  r.makers = {make<D, double>, nullptr, nullptr, nullptr, make<D, Rational>};
+  r.makers = {};
+  std::get<Maker<double>>(r.makers) = make<D, double>;
+  std::get<Maker<Rational>>(r.makers) = make<D, Rational>;
   return r;
 }
 

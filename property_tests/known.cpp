@@ -52,6 +52,8 @@ const char* why_no_bound(Function f, const Case& c) {
   return nullptr;
 }
 
+double condition(const Case& c) { return sensitivity(c)->condition(); }
+
 bool damped(const Case& c) {
   Known& known = *c.known;
   if (known.damped) return *known.damped;

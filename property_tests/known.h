@@ -40,6 +40,8 @@ struct Known {
 
 /// Reason why there is no bound for this function on this case (size, M or A singular); nullptr: there is one.
 [[nodiscard]] const char* why_no_bound(Function f, const Case& c);
+/// κ_∞(A). Needs why_no_bound(solve) == nullptr.
+[[nodiscard]] double condition(const Case& c);
 /// Every row has R⁻¹ > 0 (blocks positive definite).
 [[nodiscard]] bool damped(const Case& c);
 /// A and A⁻¹ by the definition in Quad or Rational. Shapes m×m. @throws std::runtime_error when singular.

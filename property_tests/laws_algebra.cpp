@@ -20,6 +20,16 @@ bool promises_nothing(const OperatorRow& op, const Case& c) {
   return !(Quad(pass_below * unit_roundoff<double>) * largest_bound < largest);
 }
 
+/// Exact numbers grow with every step of an iteration: more than six steps (those taken in double) are left out.
+bool long_iteration(const OperatorRow& op, const Case& c) {
+  if (!op.solves || c.rows() <= 6) return false;
+  Route<double> route(op, c.problem, c.damping);
+  const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
+  MatrixX<double> y = MatrixX<double>::Zero(c.rows(), 1);
+  Workspace<double> w(route.get().workspace(1));
+  return route.get().solve(x, y, w).iterations > 6;
+}
+
 template <class T> using Dense = MatrixX<Wide<T>>;
 
 /// Bound of F(x) for double; nothing for exact scalars.
@@ -48,6 +58,7 @@ template <class T> const char* why_not(Function f, const OperatorRow& op, const 
     if (!op.terminates_exactly || !std::get<Maker<T>>(op.makers)) return "does not end in exact arithmetic";
   }
   if (solve && !op.zero_damping && !damped(c)) return "needs R⁻¹ > 0";
+  if (solve && ScalarTraits<T>::exact && long_iteration(op, c)) return "more than six steps with ever longer exact numbers";
   if (const char* reason = why_no_bound(f, c)) return reason;
   if (!ScalarTraits<T>::exact && solve && promises_nothing(op, c)) return "promises no digit: 30 eps · bound reaches the answer";
   return nullptr;

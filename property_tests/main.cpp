@@ -1,9 +1,10 @@
 // The loop: for every operator, on every family, every law that applies.
 //
-//   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--verbose]
+//   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--verbose] [--times]
 //
 // Prints the worst ratio per law and operator and why anything was skipped. Exit code 0: every law holds; 1: not.
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -20,7 +21,7 @@ struct Options {
   std::string op, family, law;
   std::uint64_t seeds = 3;
   int shard = 0, shards = 1;
-  bool verbose = false;
+  bool verbose = false, times = false;
 };
 
 void read_shard(const std::string& text, Options& o) {
@@ -35,18 +36,18 @@ Options read(int argc, char** argv) {
   Options o;
   for (int k = 1; k < argc; ++k) {
     const std::string key = argv[k];
-    if (key == "--verbose") {
-      o.verbose = true;
+    if (key == "--verbose" || key == "--times") {
+      (key == "--times" ? o.times : o.verbose) = true;
       continue;
     }
-    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", "--op --family --law --seeds --shard --verbose");
+    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", "--op --family --law --seeds --shard --verbose --times");
     const std::string value = argv[++k];
     if (key == "--op") o.op = find_operator(value).name;
     else if (key == "--family") o.family = generators::find_family(value).name;
     else if (key == "--law") o.law = find_law(value).name;
     else if (key == "--seeds") o.seeds = std::stoull(value);
     else if (key == "--shard") read_shard(value, o);
-    else throw ModelError("command line", key, "is unknown", "--op --family --law --seeds --shard --verbose");
+    else throw ModelError("command line", key, "is unknown", "--op --family --law --seeds --shard --verbose --times");
   }
   return o;
 }
@@ -70,7 +71,12 @@ int run(const Options& o) {
     if (family.exact_size >= 0) sizes.push_back(family.exact_size);
     for (const Index n : sizes)
       for (std::uint64_t seed = 1; seed <= o.seeds; ++seed)
-        if (cell++ % o.shards == o.shard) check_case(o, make_case(family.name, n, seed), summary);
+        if (cell++ % o.shards == o.shard) {
+          const std::clock_t start = std::clock();
+          const Case c = make_case(family.name, n, seed);
+          check_case(o, c, summary);
+          if (o.times) std::cout << static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC << " s  " << c.label << '\n';
+        }
   }
   summary.print(std::cout);
   return summary.failed() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
