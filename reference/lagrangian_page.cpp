@@ -38,14 +38,18 @@ std::string entry(const std::string& name, unsigned i, unsigned j) {
   return name + "(" + std::to_string(i + 1) + "," + std::to_string(j + 1) + ")";
 }
 
-/// One line per entry that is not zero, the zeros in one last line. Of a symmetric matrix the upper triangle.
+/// One line per entry that is not zero, the zeros in one last line; many are not listed. Of a symmetric matrix the upper
+/// triangle.
 template <class Write> std::string lines(const std::string& name, const matrix& x, bool symmetric, Write write) {
+  constexpr int listed = 4;
   std::string out, zeros;
+  int count = 0;
   for (unsigned i = 0; i < x.rows(); ++i)
     for (unsigned j = symmetric ? i : 0; j < x.cols(); ++j)
-      if (x(i, j).is_zero()) zeros += entry(name, i, j) + " = ";
+      if (x(i, j).is_zero()) zeros += entry(name, i, j) + " = ", ++count;
       else out += entry(name, i, j) + " = " + write(i, j) + "\n";
-  return out + (zeros.empty() ? "" : zeros + "0\n");
+  if (count > listed) return out + "all others 0\n";
+  return count == 0 ? out : out + zeros + "0\n";
 }
 
 /// In brackets unless it is one factor.
@@ -202,7 +206,10 @@ std::string Text::product(const ex& e) const {
       exponent = std::min(exponent, at == t.functions.end() ? 0 : at->second);
     }
   }
-  if (all[0].coefficient.is_negative() != common.coefficient.is_negative()) common.coefficient = -common.coefficient;
+  const auto negative = std::count_if(all.begin(), all.end(), [](const Term& t) { return t.coefficient.is_negative(); });
+  common.coefficient = GiNaC::abs(common.coefficient);
+  if (all[0].coefficient.is_negative() && 2 * negative > static_cast<std::ptrdiff_t>(all.size()))
+    common.coefficient = -common.coefficient;
   for (Term& t : all) {
     t.coefficient /= common.coefficient;
     for (std::size_t k = 0; k < order_.size(); ++k) t.exponents[k] -= common.exponents[k];
