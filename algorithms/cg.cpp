@@ -1,5 +1,7 @@
 #include "algorithms/cg.h"
 
+#include <cmath>
+
 #include "algorithms/columns.h"
 
 namespace delassus {
@@ -96,6 +98,7 @@ template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) co
   report.backward_error = scale > 0 ? residual / scale : residual;
   const double attainable = ScalarTraits<T>::exact ? 0.0 : 30 * unit_roundoff<T> * static_cast<double>(m);
   if (!(report.backward_error <= attainable)) report.status = Status::not_converged;
+  if (!std::isfinite(report.backward_error)) report.status = Status::not_finite;
   return report;
 }
 
