@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "algorithms/delassus.h"
@@ -180,14 +181,18 @@ TEST_P(Lagrangian, SeesAChangedModel) {
                                                     {"frame on the wrong side", turned_frame}};
   const Sample s = sample(k_, 1);
   int seen = 0;
+  double smallest = std::numeric_limits<double>::infinity();
   for (const auto& [what, change] : changes) {
     Model model = model_of(k_, s);
     if (!change(model)) continue;
     ++seen;
-    EXPECT_FALSE(verdict<double>(k_, s, model).passed()) << what;
+    const Verdict v = verdict<double>(k_, s, model);
+    EXPECT_FALSE(v.passed()) << what;
     EXPECT_FALSE(verdict<Quad>(k_, s, model).passed()) << what;
+    smallest = std::min(smallest, v.ratio);
   }
   EXPECT_GE(seen, 2);
+  RecordProperty("smallest_ratio_in_double", std::to_string(smallest));
 }
 
 /// The moment part of every row of the first constraint with the wrong sign: J is wrong, M is right.
