@@ -70,11 +70,13 @@ template <class T> Report finished(Report report, ConstRef<T> in, Ref<T> out) {
 
 template <class T> Report Operator<T>::apply(ConstRef<T> f, Ref<T> a, Workspace<T>& w) const {
   check(f.rows(), f.cols(), a.rows(), a.cols(), f.data(), a.data(), w);
+  if (f.size() == 0) return {};
   return finished<T>(do_apply(f, a, w.data()), f, a);
 }
 
 template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Workspace<T>& w) const {
   check(a.rows(), a.cols(), f.rows(), f.cols(), a.data(), f.data(), w);
+  if (a.size() == 0) return {};
   return finished<T>(do_solve(a, f, w.data()), a, f);
 }
 
