@@ -23,7 +23,7 @@ constexpr const char* names[] = {
     "none", "relative error 1e-10", "two rows swapped", "negated", "adds |x|", "depends on numbering",
     "joint rows of the wrong sign", "forgets armature", "forgets the last constraint", "all columns like the first",
     "second update ignored", "update_damping ignored", "allocates", "reads the workspace", "refuses empty sizes",
-    "hard rows softened silently", "NaN becomes zero", "never converges"};
+    "hard rows softened silently", "NaN of the problem becomes zero", "never converges"};
 
 /// dense_cholesky with a defect.
 template <class T> class Wrong final : public Operator<T> {
@@ -41,6 +41,7 @@ template <class T> class Wrong final : public Operator<T> {
   }
   Report do_update(const Problem<T>& p, const Damping<T>& d) override {
     if (defect_ == Defect::first_update_stays && updates_++ > 0) return {};
+    if (defect_ == Defect::no_empty_size && d.diagonal.empty()) return {Status::lost_pivot};
     changed_.S = p.S;
     changed_.H = p.H;
     changed_.K = p.K;
@@ -51,6 +52,8 @@ template <class T> class Wrong final : public Operator<T> {
     if (defect_ == Defect::no_armature)
       for (T& a : changed_.armature) a = T(0);
     if (defect_ == Defect::forgets_last_constraint && !changed_.K.empty()) changed_.K.back().setZero();
+    if (defect_ == Defect::swallows_nan)
+      for (auto& k : changed_.K) k = (k.array() == k.array()).select(k, T(0));
     return inner_->update(changed_, softened(d));
   }
   Report do_update_damping(const Damping<T>& d) override {
@@ -70,16 +73,12 @@ template <class T> class Wrong final : public Operator<T> {
   }
 
   Report wrong(ConstRef<T> x, Ref<T> y, T* workspace, bool apply) const {
-    if (defect_ == Defect::no_empty_size && x.size() == 0) return {Status::lost_pivot};
     if (defect_ == Defect::never_converges && !apply) {
       y.setZero();
       return {Status::not_converged};
     }
     auto in = in_.leftCols(x.cols());
     in = x;
-    if (defect_ == Defect::swallows_nan)
-      for (Index k = 0; k < in.size(); ++k)
-        if (!(in(k) == in(k))) in(k) = T(0);
     const Report r = apply ? inner_->apply(in, y, *work_) : inner_->solve(in, y, *work_);
     if (r.ok() && y.size() > 0) spoil(x, y, workspace);
     return defect_ == Defect::softens_hard_rows || r.ok() ? r : Report{r.status, r.where};

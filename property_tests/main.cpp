@@ -19,7 +19,7 @@ using namespace delassus::laws;
 
 struct Options {
   std::string op, family, law;
-  std::uint64_t seeds = 3;
+  std::uint64_t seeds = 5;
   int shard = 0, shards = 1;
   bool verbose = false, times = false;
 };
