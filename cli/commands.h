@@ -22,5 +22,7 @@ void add_apply(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_report(CLI::App& app, Run& run);
+void add_stress(CLI::App& app, Run& run);
+void add_replay(CLI::App& app, Run& run);
 
 }  // namespace delassus::cli

@@ -1,0 +1,189 @@
+// `delassus stress`: a randomised search for broken laws, alone or in shards under a launcher; reports merged.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include <CLI/CLI.hpp>
+
+#include "bench/text.h"
+#include "cli/commands.h"
+#include "cli/stress_json.h"
+#include "generators/classes.h"
+
+namespace delassus::cli {
+
+namespace {
+
+struct Options {
+  std::string time = "60s", shard, report, folder = ".";
+  std::optional<std::uint64_t> seed;
+  std::int64_t count = 0;
+  std::size_t failures = 1;
+  std::vector<std::string> ops, merge;
+};
+
+/// "90", "90s", "2m" or "1h" in seconds.
+double seconds_of(const std::string& text) {
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = std::string::npos;
+  }
+  const std::string unit = end == std::string::npos ? "?" : text.substr(end);
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
+  if (factor == 0 || !(value > 0) || !std::isfinite(value))
+    throw ModelError("command line", "--time", "is " + text, "a positive number with s, m or h: 60s, 10m, 2h");
+  return factor * value;
+}
+
+struct Shard {
+  int number = 1, of = 1;
+  std::string from;   ///< what said so; empty: nothing
+};
+
+/// A whole non-negative number, or −1.
+int whole(const std::string& text) {
+  if (text.empty() || text.size() > 8 || text.find_first_not_of("0123456789") != std::string::npos) return -1;
+  return std::stoi(text);
+}
+
+int variable(const char* name) {
+  const char* value = name ? std::getenv(name) : nullptr;
+  return value ? whole(value) : -1;
+}
+
+/// Launchers by the variables they set: rank, number of ranks, first rank (nullptr: 0).
+constexpr struct {
+  const char *rank, *size, *first;
+} launchers[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", nullptr},
+                 {"PMI_RANK", "PMI_SIZE", nullptr},
+                 {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
+                 {"SLURM_PROCID", "SLURM_NTASKS", nullptr}};
+
+/// --shard, or the first launcher that is there.
+Shard shard_of(const std::string& text) {
+  if (!text.empty()) {
+    const std::size_t slash = text.find('/');
+    const int i = whole(text.substr(0, slash)), n = slash == std::string::npos ? -1 : whole(text.substr(slash + 1));
+    if (i < 1 || i > n) throw ModelError("command line", "--shard", "is " + text, "i/n with 1 ≤ i ≤ n");
+    return {i, n, "--shard"};
+  }
+  for (const auto& launcher : launchers) {
+    const int rank = variable(launcher.rank), size = variable(launcher.size);
+    const int first = launcher.first ? std::max(0, variable(launcher.first)) : 0;
+    if (rank >= first && size > rank - first) return {rank - first + 1, size, launcher.rank};
+  }
+  return {};
+}
+
+std::uint64_t fresh_seed() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 16) ^ device();
+}
+
+laws::Search search_of(const Options& o) {
+  laws::Search s;
+  const Shard shard = shard_of(o.shard);
+  if (shard.of > 1 && !o.seed)
+    throw ModelError("command line", "--seed", "is missing for shard " + std::to_string(shard.number) + "/" +
+                     std::to_string(shard.of) + " (" + shard.from + ")", "the same seed for every shard");
+  s.seed = o.seed ? *o.seed : fresh_seed();
+  s.shard = shard.number;
+  s.shards = shard.of;
+  s.seconds = seconds_of(o.time);
+  s.count = o.count;
+  s.most_failures = o.failures;
+  s.ops.clear();
+  for (const OperatorRow* row : chosen_operators(o.ops)) s.ops.push_back(*row);
+  return s;
+}
+
+void print_progress(const laws::Found& f) {
+  std::printf("%7.1f s  %9lld problems  %7.1f per second  %11lld checks  %zu failures\n", f.seconds,
+              static_cast<long long>(f.problems), static_cast<double>(f.problems) / f.seconds,
+              static_cast<long long>(f.checks), f.failures.size());
+  std::fflush(stdout);
+}
+
+void print_classes(const laws::Found& f) {
+  for (std::size_t k = 0; k < f.classes.size(); ++k)
+    std::printf("  %s %9lld  %5.1f %%\n", bench::pad_right(std::string(generators::classes()[k].name), 24).c_str(),
+                static_cast<long long>(f.classes[k]),
+                f.problems ? 100 * static_cast<double>(f.classes[k]) / static_cast<double>(f.problems) : 0.0);
+}
+
+/// "failure-SEED-operator-law.json" with everything but letters and digits of ASCII as "_".
+std::string file_name(const laws::Failure& f) {
+  std::string name = f.op + "-" + f.law;
+  for (char& c : name)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
+  return "failure-" + std::to_string(f.seed) + "-" + name + ".json";
+}
+
+void print_failure(const laws::Failure& f) {
+  std::printf("FAILED  %s: %s, ratio %s %s\n  seed %llu, %zu bodies, shrunk to %zu bodies and %zu constraints in %d steps\n",
+              f.op.c_str(), f.law.c_str(), bench::three_digits(f.ratio).c_str(), f.note.c_str(),
+              static_cast<unsigned long long>(f.seed), f.found_bodies, f.spec.bodies.size(),
+              f.spec.links.size() + f.spec.joints.size(), f.tried);
+}
+
+/// Prints what was found and writes the files; the exit code.
+int conclude(const laws::Found& f, const Options& o) {
+  std::printf("%lld problems in %.1f s, %lld checks (%lld did not apply), %zu failures; classes:\n",
+              static_cast<long long>(f.problems), f.seconds, static_cast<long long>(f.checks),
+              static_cast<long long>(f.skipped), f.failures.size());
+  print_classes(f);
+  for (const laws::Failure& x : f.failures) {
+    const std::string file = (std::filesystem::path(o.folder) / file_name(x)).string();
+    print_failure(x);
+    write_text(file, failure_json(x).dump(1));
+    std::printf("  delassus replay %s\n", file.c_str());
+  }
+  if (!o.report.empty()) {
+    std::string file = o.report;
+    if (const std::size_t at = file.find("{shard}"); at != std::string::npos) file.replace(at, 7, std::to_string(f.shard));
+    write_text(file, found_json(f).dump(1));
+  }
+  return f.failures.empty() ? good : law_broken;
+}
+
+int merge(const Options& o) {
+  std::vector<laws::Found> shards;
+  for (const std::string& file : o.merge) {
+    const json j = json::parse(read_text(file), nullptr, false);
+    if (j.is_discarded()) throw ModelError(file, "document", "is not JSON", "a report written by `stress --report`");
+    shards.push_back(read_found(j, file));
+  }
+  return conclude(laws::merged(shards), o);
+}
+
+int stress(const Options& o) {
+  if (!o.merge.empty()) return merge(o);
+  laws::Search s = search_of(o);
+  std::printf("seed %llu, shard %d/%d\n", static_cast<unsigned long long>(s.seed), s.shard, s.shards);
+  s.progress = print_progress;
+  return conclude(laws::search(s), o);
+}
+
+}  // namespace
+
+void add_stress(CLI::App& app, Run& run) {
+  CLI::App* c = app.add_subcommand("stress", "randomised search for broken laws");
+  auto o = std::make_shared<Options>();
+  c->add_option("--time", o->time, "how long: 60s, 10m, 2h")->capture_default_str();
+  c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(CLI::PositiveNumber);
+  c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed");
+  c->add_option("--shard", o->shard, "i/n: problems i, i + n, …; when left out, rank and size set by the launcher");
+  c->add_option("--op", o->ops, "only these operators");
+  c->add_option("--failures", o->failures, "stop after this many pairs of law and operator")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--folder", o->folder, "where failures are written")->check(CLI::ExistingDirectory)->capture_default_str();
+  c->add_option("--report", o->report, "write what was done as JSON; {shard} in the name becomes the shard's number");
+  c->add_option("--merge", o->merge, "put reports of shards together instead of searching");
+  c->footer("Exit code 1 when a law is broken; the failure is shrunk, written, and the command that replays it printed.");
+  c->callback([=, &run] { run = [=] { return stress(*o); }; });
+}
+
+}  // namespace delassus::cli
