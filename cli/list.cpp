@@ -79,12 +79,37 @@ void print_table(const json& rows) {
     std::printf("  %s  %s\n", bench::pad_right(row["name"], width).c_str(), row["summary"].get<std::string>().c_str());
 }
 
-int list(const std::string& wanted, bool as_json) {
+/// Table cells: everything a row has, names as code.
+void print_markdown(const std::string& table, const json& rows) {
+  if (table == "operators") {
+    std::printf("| operator | what it is | formula | functions | cost | error of apply / solve | source |\n|---|---|---|---|---|---|---|\n");
+    for (const json& r : rows) {
+      const bool applies = r["applies"], solves = r["solves"];
+      const std::string functions = applies && solves ? "apply, solve" : applies ? "apply" : "solve";
+      const std::string error = (applies ? r["apply_error"].get<std::string>() : "–") + " / " +
+                                (solves ? r["solve_error"].get<std::string>() : "–");
+      std::printf("| `%s` | %s | %s | %s | %s | %s | %s |\n", r["name"].get<std::string>().c_str(),
+                  r["summary"].get<std::string>().c_str(), r["formula"].get<std::string>().c_str(), functions.c_str(),
+                  r["cost"].get<std::string>().c_str(), error.c_str(), r["source"].get<std::string>().c_str());
+    }
+    return;
+  }
+  const char* last = table == "laws" ? "bound" : table == "references" ? "trusted" : nullptr;
+  std::printf("| %s | %s |%s\n|---|---|%s\n", table.c_str(), table == "laws" ? "identity" : "what it is",
+              last ? (std::string(" ") + last + " |").c_str() : "", last ? "---|" : "");
+  for (const json& r : rows)
+    std::printf("| `%s` | %s |%s\n", r["name"].get<std::string>().c_str(), r["summary"].get<std::string>().c_str(),
+                last ? (" " + r[last].get<std::string>() + " |").c_str() : "");
+}
+
+int list(const std::string& wanted, bool as_json, bool as_markdown) {
   json all = json::array();
   for (const Table& t : tables) {
     if (!wanted.empty() && wanted != t.name) continue;
     const json rows = t.rows();
-    if (!as_json) {
+    if (as_markdown) {
+      print_markdown(t.name, rows);
+    } else if (!as_json) {
       std::printf("%s%s\n", t.name, wanted.empty() ? ":" : "");
       print_table(rows);
     } else if (!wanted.empty()) {
@@ -102,12 +127,13 @@ int list(const std::string& wanted, bool as_json) {
 void add_list(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes");
   auto table = std::make_shared<std::string>();
-  auto as_json = std::make_shared<bool>(false);
+  auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
   std::set<std::string> names;
   for (const Table& t : tables) names.insert(t.name);
   c->add_option("table", *table, "one table; all when left out")->check(CLI::IsMember(names));
-  c->add_flag("--json", *as_json, "an array of objects with `name`");
-  c->callback([=, &run] { run = [=] { return list(*table, *as_json); }; });
+  CLI::Option* json_flag = c->add_flag("--json", *as_json, "an array of objects with `name`");
+  c->add_flag("--markdown", *as_markdown, "a table for a page")->excludes(json_flag);
+  c->callback([=, &run] { run = [=] { return list(*table, *as_json, *as_markdown); }; });
 }
 
 }  // namespace delassus::cli
