@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "property_tests/unit/temporary.h"
 #include "models/scene.h"
 #include "models/urdf.h"
 
@@ -11,7 +12,7 @@ namespace delassus {
 namespace {
 
 std::string write(const std::string& name, const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / ("delassus_bad_" + name);
+  const auto file = delassus::test::temporary("delassus_bad_" + name);
   std::ofstream(file, std::ios::binary) << text;
   return file.string();
 }

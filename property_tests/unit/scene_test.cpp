@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "property_tests/unit/temporary.h"
 #include "models/box_contacts.h"
 #include "models/contacts.h"
 #include "models/scene.h"
@@ -123,7 +124,7 @@ TEST(Swimmer, sizes_grow_with_the_links) {
 }
 
 Scene scene_of(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / "delassus_scene_test.yaml";
+  const auto file = delassus::test::temporary("delassus_scene_test.yaml");
   std::ofstream(file) << text;
   return load_scene(file.string());
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "property_tests/unit/temporary.h"
 #include "algorithms/kinematics.h"
 #include "models/scene.h"
 #include "models/urdf.h"
@@ -14,7 +15,7 @@ namespace {
 constexpr double eps = 0x1p-53;
 
 std::string write_urdf(const std::string& stem, const std::string& body) {
-  const auto file = std::filesystem::temp_directory_path() / ("delassus_" + stem + ".urdf");
+  const auto file = delassus::test::temporary("delassus_" + stem + ".urdf");
   std::ofstream(file) << "<robot name=\"r\">" << body << "</robot>";
   return file.string();
 }
