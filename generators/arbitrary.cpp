@@ -11,6 +11,14 @@ using C = ConstraintKind;
 
 bool one_in(Random& r, int n) { return r.integer(1, n) == 1; }
 
+/// Any joint but one of six freedoms below another body: that restrains nothing and is a second tree.
+void add_body_below(Draft& d, Index parent) {
+  BodySpec& b = d.any_body(parent);
+  if (parent < 0) return;
+  if (b.joint == JointKind::floating) b.joint = JointKind::spherical;
+  b.dof = std::min<Index>(b.dof, 5);
+}
+
 /// Chains, trees and forests, a free base on every third.
 void add_bodies(Draft& d, Index n) {
   Random& r = d.random;
@@ -20,7 +28,7 @@ void add_bodies(Draft& d, Index n) {
     const int last = static_cast<int>(k) - 1;
     const Index parent = shape < 2 || k == 0 ? last : r.integer(shape == 2 ? 0 : -1, last);
     if (k == 0 && floating) d.body(-1, JointKind::floating);
-    else d.any_body(parent);
+    else add_body_below(d, parent);
   }
 }
 

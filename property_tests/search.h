@@ -49,7 +49,7 @@ struct Search {
 [[nodiscard]] Found search(const Search& s);
 
 /// Whether the search holds this law against the problem of this seed: the two definitions always, the others one
-/// problem in eight each, equalities in rational numbers on up to three bodies only.
+/// problem in 8 each, equalities in rational numbers one in 32 of those with up to three bodies.
 [[nodiscard]] bool chosen(const LawRow& law, const generators::Spec& spec);
 
 /// Shards put together. @throws ModelError when they are not the distinct shards of one search.
