@@ -12,6 +12,12 @@
 #include "property_tests/search.h"
 #include "property_tests/summary.h"
 
+namespace delassus::generators {
+
+static std::ostream& operator<<(std::ostream& out, const Spec& spec) { return out << to_json(spec); }
+
+}  // namespace delassus::generators
+
 namespace rc {
 
 using delassus::generators::Spec;
@@ -49,7 +55,7 @@ void laws_hold(const generators::Spec& spec, laws::Summary& summary) {
       if (!o.failed()) continue;
       std::ostringstream message;
       laws::print(message, o);
-      RC_FAIL(message.str() + generators::to_json(spec));
+      RC_FAIL(message.str());
     }
 }
 
@@ -57,7 +63,7 @@ void laws_hold(const generators::Spec& spec, laws::Summary& summary) {
 
 int main() {
   laws::count_allocations();
-  setenv("RC_PARAMS", "seed=20240229 max_success=200", 0);
+  setenv("RC_PARAMS", "seed=20240229 max_success=100", 0);
   laws::Summary summary;
   const bool ok = rc::check("every law on random specs", [&] {
     const auto spec = *rc::gen::arbitrary<generators::Spec>().as("spec");
