@@ -5,7 +5,7 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Index most_dofs = 250, most_rows_apply = 1000, most_rows_solve = 400;
+constexpr Index most_dofs = 300, most_rows_apply = 1000, most_rows_solve = 400;
 
 /// nullptr when M is singular or the case too large.
 reference::Sensitivity* sensitivity(const Case& c) {
@@ -45,7 +45,7 @@ const MatrixX<Rational>& exact_definition(Function f, const Case& c) {
 
 const char* why_no_bound(Function f, const Case& c) {
   const Structure& s = *c.problem.structure;
-  if (s.dofs() > most_dofs || s.rows > most_rows_apply) return "too large for the dense bounds (250 dofs, 1000 rows)";
+  if (s.dofs() > most_dofs || s.rows > most_rows_apply) return "too large for the dense bounds (300 dofs, 1000 rows)";
   if (f == Function::solve && s.rows > most_rows_solve) return "too large for the dense bounds of solve (400 rows)";
   if (!sensitivity(c)) return "M is singular";
   if (f == Function::solve && !sensitivity(c)->regular()) return "A is singular";

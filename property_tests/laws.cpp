@@ -18,10 +18,18 @@ constexpr auto can_solve = why_not_function<double, solve>;
 constexpr auto can_apply_exactly = why_not_function<X, apply>;
 constexpr auto can_solve_exactly = why_not_function<X, solve>;
 
+/// κ(A) of the case, or of a variant of it that a law formed, is beyond the square root of 1/eps.
+bool ill_conditioned(const Case& c) {
+  if (!why_no_bound(Function::solve, c) && condition(c) > 0x1p26) return true;
+  for (const auto& [name, variant] : c.known->variants)
+    if (ill_conditioned(variant)) return true;
+  return false;
+}
+
 /// An iteration may end short of its target, and say so, only where κ(A) is beyond the square root of 1/eps.
 const char* excuse(const Broken& broken, const Case& c) {
-  if (broken.status != Status::not_converged || why_no_bound(Function::solve, c)) return nullptr;
-  return condition(c) > 0x1p26 ? "not_converged, and says so, where κ(A) > 2²⁶" : nullptr;
+  if (broken.status != Status::not_converged) return nullptr;
+  return ill_conditioned(c) ? "not_converged, and says so, where κ(A) > 2²⁶" : nullptr;
 }
 
 }  // namespace
