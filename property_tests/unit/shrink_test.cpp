@@ -38,6 +38,18 @@ TEST(Shrink, EveryMoveLeavesASpecThatBuildsAndIsSimpler) {
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(MoveKind::ends)) << "a kind of move never applied";
 }
 
+TEST(Shrink, WhatHangsOnADroppedBodyGoesToItsNearestAncestor) {
+  Spec spec = find_family("chain").make(5, 1);
+  spec.links.resize(1);
+  spec.links[0].kind = ConstraintKind::generic;
+  spec.links[0].bodies = {3, 4, 0};
+  const std::optional<Spec> next = moved(spec, {MoveKind::drop_bodies, 2, 2});
+  ASSERT_TRUE(next);
+  ASSERT_EQ(next->bodies.size(), 3u);
+  EXPECT_EQ(next->bodies[2].parent, 1);
+  EXPECT_EQ(next->links[0].bodies, (std::vector<Index>{1, 2, 0}));
+}
+
 TEST(Shrink, WhateverFailsShrinksToNothing) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const Shrunk s = shrink(arbitrary(seed), [](const Spec&) { return true; });

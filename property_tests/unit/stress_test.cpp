@@ -6,6 +6,7 @@
 
 #include "generators/arbitrary.h"
 #include "generators/classes.h"
+#include "generators/draft.h"
 #include "property_tests/known.h"
 #include "property_tests/search.h"
 #include "reference/definition.h"
@@ -40,6 +41,24 @@ TEST(Classes, RankIsThatOfJByTheDefinition) {
     const MatrixX<double> rounded = converted<double>(J);
     EXPECT_EQ(generators::rank_of_J(b.problem), Eigen::FullPivLU<MatrixX<double>>(rounded).rank()) << generators::to_json(spec);
   }
+}
+
+TEST(Classes, CoupledLoopsShareABodyThatMovesBetweenTheirEnds) {
+  const auto coupled = [](const std::vector<std::vector<Index>>& loops) {
+    generators::Draft d("star", 1);
+    d.body(-1);
+    for (int k = 0; k < 4; ++k) d.body(0);
+    for (const std::vector<Index>& on : loops) d.link(generators::ConstraintKind::point, on);
+    const auto& table = generators::classes();
+    const std::vector<bool> in = generators::classes_of(d.spec, generators::build(d.spec));
+    for (std::size_t k = 0; k < table.size(); ++k)
+      if (table[k].name == "coupled loops") return static_cast<bool>(in[k]);
+    throw std::logic_error("no such class");
+  };
+  EXPECT_TRUE(coupled({{1, 2}, {2, 3}}));
+  EXPECT_FALSE(coupled({{1, 2}, {3, 4}})) << "they share the hub only, which moves both alike";
+  EXPECT_FALSE(coupled({{1, 2}, {2, 1}})) << "one loop, twice";
+  EXPECT_FALSE(coupled({{1, 2}, {2}})) << "a constraint to the ground";
 }
 
 /// dense_cholesky of a changed problem, or with a changed answer.
