@@ -7,7 +7,7 @@
 //            H_jk −= W_j D_i⁻¹ W_kᵀ     over Q_i = N_i ∪ {π(i)}
 //          is taken. D_i = L D Lᵀ, and S_i, W_j, 𝒦ᵢ are stored in the basis S_i L⁻ᵀ, in which D_i is diagonal: a joint of
 //          n_i degrees of freedom is n_i scalar steps, so the sweeps know no joint types.
-// Sweeps   force convention (ALGORITHMS, part A): u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹u; then
+// Sweeps   force convention (docs/paper_notes.md): u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹u; then
 //            ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j;   a_i = a_π + S_i ν.
 // Singular a pivot of D_i that is not positive: M (or M_R) is singular in this arithmetic; reported, never repaired.
 // Cost     update ≈ 160 N₁ + 144 |pairs| + 12 m operations; project ≈ 48 n + 24 |W| + 24 m (one-dof joints N₁).

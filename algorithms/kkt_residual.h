@@ -6,7 +6,7 @@
 //          differences of large numbers; inputs are Wide<T> too.
 // Cost     about 60 n + 72 N + 24 per K row operations in Wide<T>; O(n + m).
 // Error    eps² of the magnitudes that cancel, then one rounding to T.
-// Source   ALGORITHMS, part B (KKT-residual refinement); J. Luh, M. Walker, R. Paul 1980 (paper's [33]) for the recursion.
+// Source   the equations (2) of the paper; J. Luh, M. Walker, R. Paul 1980 (paper's [33]) for the recursion.
 #pragma once
 
 #include "algorithms/block_diagonal.h"

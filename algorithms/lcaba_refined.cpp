@@ -73,14 +73,21 @@ template <class X> double magnitude(const X* x, Index size) {
 // M_R δν = r₁ + JᵀR r₂;  δλ = R (r₂ − J δν);  ν += δν, λ += δλ
 template <class T> double LcabaRefined<T>::correct(Buffers& b, T* workspace) const {
   weights_.multiply(b.r2, b.scratch);
-  factor_.solve(b.scratch, b.r1, b.y, b.d_nu, workspace);
+  const T energy = factor_.solve(b.scratch, b.r1, b.y, b.d_nu, workspace);  // ‖δν‖² in the norm of M_R
   for (Index r = 0; r < b.m; ++r) b.y[r] = b.r2[r] - b.y[r];
   weights_.multiply(b.y, b.d_lambda);
   for (Index r = 0; r < b.m; ++r) b.lambda[r] += W(b.d_lambda[r]);
   for (Index c = 0; c < b.n; ++c) b.nu[c] += W(b.d_nu[c]);
   const double lambda = magnitude(b.lambda, b.m), change = magnitude(b.d_lambda, b.m);
-  const double nu = magnitude(b.nu, b.n), change_nu = magnitude(b.d_nu, b.n);
-  return std::max(change == 0 ? 0 : change / lambda, change_nu == 0 ? 0 : change_nu / nu);
+  const double motion = std::sqrt(std::abs(static_cast<double>(energy))) / energy_norm(b);
+  return std::max(change == 0 ? 0 : change / lambda, energy == T(0) ? 0 : motion);
+}
+
+// √(λᵀa) = √(‖ν‖²_M + ‖λ‖²_{R⁻¹}) at the solution
+template <class T> double LcabaRefined<T>::energy_norm(const Buffers& b) const {
+  T energy(0);
+  for (Index r = 0; r < b.m; ++r) energy += narrow<T>(b.lambda[r]) * b.a[r];
+  return std::sqrt(std::abs(static_cast<double>(energy)));
 }
 
 // B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂, relative to ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa
@@ -88,13 +95,9 @@ template <class T> double LcabaRefined<T>::certify(Buffers& b, T* workspace) con
   for (Index r = 0; r < b.m; ++r) b.scratch[r] = T(0);
   T squared = factor_M_.solve(b.scratch, b.r1, b.y, nullptr, workspace);
   weights_.multiply(b.r2, b.scratch);
-  T energy(0);
-  for (Index r = 0; r < b.m; ++r) {
-    squared += b.r2[r] * b.scratch[r];
-    energy += narrow<T>(b.lambda[r]) * b.a[r];
-  }
-  const double bound = std::sqrt(static_cast<double>(squared)), norm = std::sqrt(std::abs(static_cast<double>(energy)));
-  return bound == 0 ? 0 : bound / norm;
+  for (Index r = 0; r < b.m; ++r) squared += b.r2[r] * b.scratch[r];
+  const double bound = std::sqrt(std::abs(static_cast<double>(squared)));
+  return bound == 0 ? 0 : bound / energy_norm(b);
 }
 
 template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, T* workspace) const {

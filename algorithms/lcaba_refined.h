@@ -10,7 +10,7 @@
 // Cost     update: lcaba + the factor of M; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
 // Workspace  that of lcaba + the residual's + 4 n + 6 m.
 // Error    componentwise: within the data's own sensitivity, when it reports ok.
-// Source   ALGORITHMS, part B; N. Higham, Accuracy and Stability, chapter 12, for refinement.
+// Source   N. Higham, Accuracy and Stability, chapter 12, for refinement.
 #pragma once
 
 #include "algorithms/delassus.h"
@@ -35,8 +35,9 @@ template <class T> class LcabaRefined : public Operator<T> {
   using W = Wide<T>;
   struct Buffers;  // one column's vectors in the workspace
   Report solve_column(const T* a, T* f, T* workspace) const;
-  /// One correction; returns its size relative to λ.
+  /// One correction; returns its size: the larger of max|δλ| / max|λ| and ‖δν‖_{M_R} / √(λᵀa).
   double correct(Buffers& b, T* workspace) const;
+  double energy_norm(const Buffers& b) const;
   /// B relative to the energy norm of (ν, λ).
   double certify(Buffers& b, T* workspace) const;
 

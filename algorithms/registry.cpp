@@ -48,7 +48,7 @@ const std::vector<OperatorRow>& operators() {
        .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
        .solve_error = ErrorClass::amplified, .makers = makers<Lcaba>()},
       {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate: the default",
-       .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: docs/accuracy.md",
+       .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: algorithms/lcaba_refined.h",
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
        .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::componentwise,
        .makers = makers<LcabaRefined>()},

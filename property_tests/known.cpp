@@ -54,6 +54,12 @@ const char* why_no_bound(Function f, const Case& c) {
 
 double condition(const Case& c) { return sensitivity(c)->condition(); }
 
+bool exactly_regular(const Case& c) {
+  std::optional<bool>& known = c.known->exactly_regular;
+  if (!known) known = reference::PivotedLdlt<Rational>(exact_definition(Function::apply, c)).regular();
+  return *known;
+}
+
 bool damped(const Case& c) {
   Known& known = *c.known;
   if (known.damped) return *known.damped;

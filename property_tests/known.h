@@ -34,6 +34,7 @@ struct Known {
   std::optional<bool> damped;
   std::optional<reference::Dense<Rational>> exact;
   std::optional<MatrixX<Rational>> exact_A, exact_inverse;
+  std::optional<bool> exactly_regular;
   std::map<std::string, Case> variants;
   std::map<std::string, std::optional<MatrixX<Quad>>> answers;  ///< of references, by name and question
 };
@@ -42,6 +43,8 @@ struct Known {
 [[nodiscard]] const char* why_no_bound(Function f, const Case& c);
 /// κ_∞(A). Needs why_no_bound(solve) == nullptr.
 [[nodiscard]] double condition(const Case& c);
+/// A is regular, decided in rational numbers.
+[[nodiscard]] bool exactly_regular(const Case& c);
 /// Every row has R⁻¹ > 0 (blocks positive definite).
 [[nodiscard]] bool damped(const Case& c);
 /// A and A⁻¹ by the definition in Quad or Rational. Shapes m×m. @throws std::runtime_error when singular.

@@ -60,6 +60,7 @@ template <class T> const char* why_not(Function f, const OperatorRow& op, const 
   if (solve && !op.zero_damping && !damped(c)) return "needs R⁻¹ > 0";
   if (solve && ScalarTraits<T>::exact && long_iteration(op, c)) return "more than six steps with ever longer exact numbers";
   if (const char* reason = why_no_bound(f, c)) return reason;
+  if (solve && ScalarTraits<T>::exact && !exactly_regular(c)) return "A is singular";
   if (!ScalarTraits<T>::exact && solve && promises_nothing(op, c)) return "promises no digit: 30 eps · bound reaches the answer";
   return nullptr;
 }

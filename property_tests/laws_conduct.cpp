@@ -91,6 +91,10 @@ template <Function F> Verdict nan_stays(const OperatorRow& op, const Case& c) {
 
   Problem<double> p = c.problem;
   if (p.K.empty()) return {0, "NaN", -1, {}};
+  const Structure& s = *p.structure;
+  Index freedoms = 0;  // of the body K[0] acts on: one that nothing moves never reads its K
+  for (Index i = s.link_constraints[0].links[0].body; i != ground; i = s.parent[i]) freedoms += s.dofs(i);
+  if (freedoms == 0) return {0, "NaN", -1, {}};
   p.K[0][static_cast<Index>(c.seed % 6)] = nan;
   const Report updated = route.get().update(p, c.damping);
   const Report r = call(F, route.get(), vectors<double>(m, 1, c.seed), y, w);
