@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algorithms/stochastic.h"
+
 namespace delassus {
 
 template <class T> void Damping<T>::check_sizes(const Structure& s) const {
@@ -88,5 +90,6 @@ template <class T> Index BlockDiagonal<T>::bytes() const {
   template class BlockDiagonal<T>;    \
   template void Damping<T>::check_sizes(const Structure&) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+template class BlockDiagonal<Stochastic>;
 
 }  // namespace delassus

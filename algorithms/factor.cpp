@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algorithms/stochastic.h"
+
 namespace delassus {
 
 template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan) {
@@ -265,5 +267,6 @@ template <class T> Index Factor<T>::bytes() const {
 
 #define DELASSUS_INSTANTIATE(T) template class Factor<T>;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+DELASSUS_INSTANTIATE(Stochastic)
 
 }  // namespace delassus

@@ -44,6 +44,8 @@ template <class T> class Factor {
   [[nodiscard]] Index bytes() const;
 
  private:
+  template <class> friend class FactorView;  // reads intermediate numbers: property_tests/digits.cpp
+
   struct Attachment {  // one body of a link constraint
     int step;          // from first_active
     Index row, rows, first;

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/scalars.h"
+#include "algorithms/stochastic.h"
 
 namespace delassus {
 namespace {
@@ -290,6 +290,7 @@ DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
 template struct Problem<PrimeField>;
 template void Damping<PrimeField>::multiply(const VectorX<PrimeField>&, VectorX<PrimeField>&) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_CAST_FROM_DOUBLE)
+DELASSUS_CAST_FROM_DOUBLE(Stochastic)
 DELASSUS_CAST_TO_DOUBLE(float)
 DELASSUS_CAST_TO_DOUBLE(Quad)
 DELASSUS_CAST_TO_DOUBLE(Rational)

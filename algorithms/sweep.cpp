@@ -1,5 +1,6 @@
 // The two sweeps of Factor: y = J M_R⁻¹ Jᵀ x. Active steps only.
 #include "algorithms/factor.h"
+#include "algorithms/stochastic.h"
 
 namespace delassus {
 namespace {
@@ -128,6 +129,11 @@ template <class T> T Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* 
 #define DELASSUS_INSTANTIATE(T) template T Factor<T>::solve(const T*, const T*, T*, T*, T*) const; \
   template void Factor<T>::project<T>(const T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+DELASSUS_INSTANTIATE(Stochastic)
+template void Factor<Stochastic>::scatter(const Stochastic*, Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::backward(Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::forward(Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::gather(const Six<Stochastic>*, const Stochastic*, Stochastic*) const;
 template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
 template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
 
