@@ -10,7 +10,7 @@ namespace delassus::bench {
 
 namespace {
 
-constexpr double width = 480, margin = 14;  // of the picture [user units]
+constexpr double width = picture_width, margin = 14, disc = 9.5;  // [user units]
 
 const char* const joint_mark = "M-2.6,0a2.6,2.6 0 1,0 5.2,0a2.6,2.6 0 1,0 -5.2,0z";
 const char* const ring_mark = "M-4.6,0a4.6,4.6 0 1,0 9.2,0a4.6,4.6 0 1,0 -9.2,0z";
@@ -31,6 +31,7 @@ std::vector<Pose<double>> world_poses(const Scene& scene) {
 struct Surface {
   double nearness;
   std::vector<Patch> patches;
+  std::string style;
 };
 
 struct Mark {
@@ -40,45 +41,76 @@ struct Mark {
 
 struct Line {
   Point from, to;
-  const char* style;
+  std::string style;
 };
+
+struct Label {
+  Point anchor, at;  // on paper, then in user units
+  std::string text;
+};
+
+/// Moves labels off each other, none far from its anchor, all within [disc, high]. Same input, same places.
+void spread(std::vector<Label>& labels, const Point& high) {
+  for (int step = 0; step < 300; ++step) {
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        Point apart = labels[i].at - labels[j].at;
+        const double distance = apart.norm(), wanted = 2 * disc + 2;
+        if (distance >= wanted) continue;
+        if (distance < 1e-6) apart = Point(std::cos(static_cast<double>(i)), std::sin(static_cast<double>(i)));
+        const Point move = 0.5 * (wanted - distance) * apart.normalized();
+        labels[i].at += move;
+        labels[j].at -= move;
+      }
+    for (Label& l : labels) {
+      if (step < 250) l.at += 0.02 * (l.anchor - l.at);
+      l.at = l.at.cwiseMax(Point(disc + 1, disc + 1)).cwiseMin(high);
+    }
+  }
+}
 
 /// Collects what is to be drawn, then writes it in the order far to near, marks last.
 class Picture {
  public:
-  explicit Picture(const Scene& scene)
-      : scene_(scene), pose_(world_poses(scene)), camera_(Camera::from(-0.95, 0.36)) {
+  Picture(const Scene& scene, const Annotation& annotation)
+      : scene_(scene), annotation_(annotation), pose_(world_poses(scene)), camera_(Camera::from(-0.95, 0.36)) {
     for (std::size_t i = 0; i < pose_.size(); ++i) add_body(i);
     for (const Constraint& c : scene.model.constraints) add_constraint(c);
     std::stable_sort(surfaces_.begin(), surfaces_.end(),
                      [](const Surface& a, const Surface& b) { return a.nearness < b.nearness; });
     frame();
+    add_labels();
   }
 
   std::string svg() const {
-    std::string s = format("<svg class=\"picture\" role=\"img\" viewBox=\"0 0 %.0f %.0f\" aria-label=\"", width, height_) +
-                    escape("Picture of the scene " + scene_.name) + "\">";
+    const double top = annotation_.header_height;
+    std::string s = format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"picture\" role=\"img\" viewBox=\"0 %.0f %.0f %.0f\" "
+                           "aria-label=\"", top > 0 ? -top : 0, width, height_ + top) +
+                    escape("Picture of the scene " + scene_.name) + "\">" + annotation_.header;
     if (scene_.has_ground) s += ground_lines();
     for (const Surface& surface : surfaces_)
-      for (const Patch& p : surface.patches) s += polygon(p);
+      for (const Patch& p : surface.patches) s += polygon(p, surface.style);
     for (const Line& l : lines_) s += line(l);
     for (const Mark& m : marks_) s += mark(m);
+    for (const Label& l : labels_) s += leader(l);
+    for (const Label& l : labels_) s += label(l);
     return s + scale_bar() + "</svg>";
   }
 
  private:
   void add_body(std::size_t i) {
     const Body& body = scene_.model.bodies[i];
+    const std::string style = annotation_.bodies.empty() ? "" : " " + annotation_.bodies[i].style;
     for (const Shape& shape : body.shapes) {
       const Pose<double> at = pose_[i] * shape.placement;
-      surfaces_.push_back({camera_.nearness(at.translation), patches(shape, at, camera_)});
+      surfaces_.push_back({camera_.nearness(at.translation), patches(shape, at, camera_), style});
     }
     const Point here = camera_(pose_[i].translation);
     corners_.push_back(here);
     const bool free = body.joint.type == JointType::floating;
     if (!free) marks_.push_back({here, joint_mark, "joint"});
-    if (body.parent != ground) lines_.push_back({camera_(pose_[static_cast<std::size_t>(body.parent)].translation), here, "link"});
-    if (body.shapes.empty() && body.com.norm() > 0) lines_.push_back({here, camera_(pose_[i] * body.com), "link"});
+    if (body.parent != ground) lines_.push_back({camera_(pose_[static_cast<std::size_t>(body.parent)].translation), here, "link" + style});
+    if (body.shapes.empty() && body.com.norm() > 0) lines_.push_back({here, camera_(pose_[i] * body.com), "link" + style});
   }
 
   Point end_point(const Frame& f) const {
@@ -115,6 +147,19 @@ class Picture {
     if (scale_ * size.y() < 40) shift_.y() += 20;
   }
 
+  /// At the middle of the body's primitives, or its centre of mass.
+  void add_labels() {
+    for (std::size_t i = 0; i < annotation_.bodies.size(); ++i) {
+      if (annotation_.bodies[i].label.empty()) continue;
+      const Body& body = scene_.model.bodies[i];
+      Vector3<double> middle = body.shapes.empty() ? body.com : Vector3<double>::Zero();
+      for (const Shape& shape : body.shapes) middle += shape.placement.translation / static_cast<double>(body.shapes.size());
+      const Point at = paper(camera_(pose_[i] * middle));
+      labels_.push_back({at, at, annotation_.bodies[i].label});
+    }
+    spread(labels_, Point(width - disc - 1, height_ - disc - 22));
+  }
+
   Point paper(const Point& p) const { return scale_ * p + shift_; }
 
   std::string path(const Outline& outline, bool closed) const {
@@ -126,15 +171,24 @@ class Picture {
     return closed ? d + "z" : d;
   }
 
-  std::string polygon(const Patch& p) const {
-    return format("<path class=\"t%d\" d=\"", p.tone) + path(p.outline, true) + "\"/>";
+  std::string polygon(const Patch& p, const std::string& style) const {
+    return format("<path class=\"t%d%s\" d=\"", p.tone, style.c_str()) + path(p.outline, true) + "\"/>";
   }
   std::string line(const Line& l) const {
-    return "<path class=\"" + std::string(l.style) + "\" d=\"" + path({l.from, l.to}, false) + "\"/>";
+    return "<path class=\"" + l.style + "\" d=\"" + path({l.from, l.to}, false) + "\"/>";
   }
   std::string mark(const Mark& m) const {
     const Point p = paper(m.at);
     return format("<path class=\"%s\" transform=\"translate(%.1f %.1f)\" d=\"%s\"/>", m.style, p.x(), p.y(), m.path);
+  }
+
+  std::string leader(const Label& l) const {
+    if ((l.at - l.anchor).norm() < disc) return "";
+    return format("<path class=\"leader\" d=\"M%.1f,%.1fL%.1f,%.1f\"/>", l.anchor.x(), l.anchor.y(), l.at.x(), l.at.y());
+  }
+  std::string label(const Label& l) const {
+    return format("<circle class=\"disc\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/><text class=\"disc\" x=\"%.1f\" y=\"%.1f\">",
+                  l.at.x(), l.at.y(), disc, l.at.x(), l.at.y() + 4.5) + escape(l.text) + "</text>";
   }
 
   /// Lines on the plane of the ground below everything that is drawn.
@@ -170,11 +224,13 @@ class Picture {
   }
 
   const Scene& scene_;
+  const Annotation& annotation_;
   const std::vector<Pose<double>> pose_;
   const Camera camera_;
   std::vector<Surface> surfaces_;
   std::vector<Line> lines_;
   std::vector<Mark> marks_;
+  std::vector<Label> labels_;
   std::vector<Point> corners_;
   Point low_{0, 0}, high_{0, 0}, shift_{0, 0};
   double scale_ = 1, height_ = 100;
@@ -182,7 +238,7 @@ class Picture {
 
 }  // namespace
 
-std::string draw(const Scene& scene) { return Picture(scene).svg(); }
+std::string draw(const Scene& scene, const Annotation& annotation) { return Picture(scene, annotation).svg(); }
 
 std::string drawing_legend() {
   const auto entry = [](const std::string& body, const char* text) {

@@ -22,10 +22,13 @@ struct Style {
 constexpr Style styles[] = {{"#0072B2", 1, 7}, {"#D55E00", 1, 5},  {"#009E73", 2, 9}, {"#CC79A7", 4, 13},
                             {"#E69F00", 5, 6}, {"#56B4E9", 2, 4}, {"#8C564B", 4, 8}, {"#7F7F7F", 3, 12}};
 
-std::string script(const std::string& x_axis, const std::string& y_axis, const std::vector<Series>& series) {
+std::string script(const std::string& x_axis, const std::string& y_axis, const std::vector<Series>& series,
+                   Axes axes) {
   std::ostringstream s;
   s << "set terminal svg size 520,340 dynamic font 'sans-serif,13'\n"
-       "set encoding utf8\nset logscale xy\nset format '10^{%T}'\nset grid lw 0.6\nset border 3\nset tics nomirror\n"
+       "set encoding utf8\n"
+    << (axes == Axes::logarithmic ? "set logscale xy\nset format '10^{%T}'\n" : "set yrange [0:*]\n")
+    << "set grid lw 0.6\nset border 3\nset tics nomirror\n"
        "set key at graph 0.02, graph 0.98 left top reverse Left samplen 3 spacing 1.2\n"
        "set offsets graph 0, graph 0, graph 0.05, graph 0\n"
     << "set xlabel '" << x_axis << "'\nset ylabel '" << y_axis << "'\nplot ";
@@ -65,16 +68,16 @@ void replace_all(std::string& s, const std::string& from, const std::string& to)
 
 void cut(std::string& s, const std::string& begin, const std::string& end) {
   const std::size_t a = s.find(begin);
-  const std::size_t b = a == std::string::npos ? a : s.find(end, a);
+  const std::size_t b = a == std::string::npos ? a : s.find(end, a + begin.size());
   if (b != std::string::npos) s.erase(a, b + end.size() - a);
 }
 
 }  // namespace
 
 std::string plot(const std::string& id, const std::string& label, const std::string& x_axis, const std::string& y_axis,
-                 const std::vector<Series>& series) {
+                 const std::vector<Series>& series, Axes axes) {
   if (series.empty()) return "";
-  std::string svg = run_gnuplot(script(x_axis, y_axis, series));
+  std::string svg = run_gnuplot(script(x_axis, y_axis, series, axes));
   const std::size_t begin = svg.find("<svg");
   if (begin == std::string::npos) return "";
   svg.erase(0, begin);

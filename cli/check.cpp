@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/text.h"
+#include "cli/check_digits.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "property_tests/laws.h"
@@ -18,7 +19,9 @@ struct Options {
   std::vector<std::string> ops;
   Index n = 0;
   std::uint64_t seed = 1;
-  bool as_json = false;
+  bool as_json = false, digits = false;
+  std::optional<double> damping;
+  std::string picture;
 };
 
 /// The cases the options ask for: a scene; one family; or every family at the middle of its sizes.
@@ -103,6 +106,11 @@ int check(const Options& o) {
   return failed ? law_broken : good;
 }
 
+int digits_of(const Options& o) {
+  if (o.ops.size() > 1) throw ModelError("", "--op", "is given more than once with --digits", "aba_sweep or lcaba");
+  return check_digits({o.scene, o.family, o.n, o.seed, o.damping, o.ops.empty() ? "lcaba" : o.ops.front(), o.picture, o.as_json});
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Run& run) {
@@ -110,12 +118,15 @@ void add_check(CLI::App& app, Run& run) {
   auto o = std::make_shared<Options>();
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--family", o->family, "one family of random problems (see `delassus list families`)");
-  c->add_option("--scene", o->scene, "a scene instead of families");
+  c->add_option("scene,--scene", o->scene, "a scene instead of families");
   c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(CLI::PositiveNumber);
   c->add_option("--seed", o->seed, "of the problem and its vectors")->capture_default_str();
-  c->add_flag("--json", o->as_json, "an array of {name, laws}");
+  c->add_flag("--json", o->as_json, "an array of {name, laws}; with --digits an object");
+  auto* digits = c->add_flag("--digits", o->digits, "instead: digits lost by every link, by random rounding (docs/digits.md); --op lcaba or aba_sweep");
+  c->add_option("--damping", o->damping, "with --digits: R⁻¹ of every row [1/kg]")->needs(digits);
+  c->add_option("--picture", o->picture, "with --digits: SVG of the scene, or of digits against link for a family")->needs(digits);
   c->footer("Without --family and --scene: every family. Exit code 1 when a law is broken.");
-  c->callback([=, &run] { run = [=] { return check(*o); }; });
+  c->callback([=, &run] { run = [=] { return o->digits ? digits_of(*o) : check(*o); }; });
 }
 
 }  // namespace delassus::cli
