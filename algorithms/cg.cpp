@@ -54,12 +54,8 @@ template <class T> Report Cg<T>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace)
 template <class T> Report Cg<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
   if (!factored_.ok()) return factored_;
   Report worst;
-  for (Index c = 0; c < a.cols(); ++c) {
-    const Report r = solve_column(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), workspace);
-    worst.iterations = std::max(worst.iterations, r.iterations);
-    worst.backward_error = std::max(worst.backward_error, r.backward_error);
-    if (!r.ok()) worst.status = r.status;
-  }
+  for (Index c = 0; c < a.cols(); ++c)
+    worst = worse(worst, solve_column(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), workspace));
   return worst;
 }
 
@@ -68,35 +64,39 @@ template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) co
   T* const inner_work = workspace + 3 * padded(m);
   ConstMap<T> b(a, m);
   Map<T> x(f, m), r(workspace, m), p(workspace + padded(m), m), q(workspace + 2 * padded(m), m);
-  x.setZero();
-  r = b;
-  p = r;
-  T rr = inner(r, r);
-  const T target = T(unit_roundoff<T>) * T(unit_roundoff<T>) * rr;
+  const T eps_squared = T(unit_roundoff<T>) * T(unit_roundoff<T>), bb = inner(b, b);
+  const double attainable = ScalarTraits<T>::exact ? 0.0 : 30 * unit_roundoff<T> * static_cast<double>(m);
   T largest = T(0);  // largest Rayleigh quotient seen: a lower estimate of λmax(A)
   Report report;
+  x.setZero();
+  r = b;
   const Index limit = 10 * m + 50;
-  while (rr > target && report.iterations < limit) {
-    multiply(p.data(), q.data(), inner_work);                 // q = A p
-    const T pq = inner(p, q);
-    if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
-    const T quotient = pq / inner(p, p);
-    if (quotient > largest) largest = quotient;
-    const T alpha = rr / pq;                                  // α = rᵀr / pᵀAp
-    x += p * alpha;
-    r -= q * alpha;
-    const T next = inner(r, r);
-    p = r + p * T(next / rr);                                 // p = r + β p
-    rr = next;
-    ++report.iterations;
+  for (int start = 0; start < max_starts; ++start) {
+    p = r;
+    T rr = inner(r, r);
+    const auto small_enough = [&] { return !(rr > eps_squared * (largest * largest * inner(x, x) + bb)); };
+    while (!small_enough() && report.iterations < limit) {
+      multiply(p.data(), q.data(), inner_work);                 // q = A p
+      const T pq = inner(p, q);
+      if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
+      const T quotient = pq / inner(p, p);
+      if (quotient > largest) largest = quotient;
+      const T alpha = rr / pq;                                  // α = rᵀr / pᵀAp
+      x += p * alpha;
+      r -= q * alpha;
+      const T next = inner(r, r);
+      p = r + p * T(next / rr);                                 // p = r + β p
+      rr = next;
+      ++report.iterations;
+    }
+    multiply(x.data(), q.data(), inner_work);
+    r = b - q;
+    const double residual = std::sqrt(static_cast<double>(inner(r, r)));
+    const double scale = static_cast<double>(largest) * std::sqrt(static_cast<double>(inner(x, x))) +
+                         std::sqrt(static_cast<double>(bb));
+    report.backward_error = scale > 0 ? residual / scale : residual;
+    if (!(report.backward_error > attainable)) break;
   }
-  multiply(x.data(), q.data(), inner_work);
-  r = b - q;
-  const double residual = std::sqrt(static_cast<double>(inner(r, r)));
-  const double scale = static_cast<double>(largest) * std::sqrt(static_cast<double>(inner(x, x))) +
-                       std::sqrt(static_cast<double>(inner(b, b)));
-  report.backward_error = scale > 0 ? residual / scale : residual;
-  const double attainable = ScalarTraits<T>::exact ? 0.0 : 30 * unit_roundoff<T> * static_cast<double>(m);
   if (!(report.backward_error <= attainable)) report.status = Status::not_converged;
   if (!std::isfinite(report.backward_error)) report.status = Status::not_finite;
   return report;

@@ -4,8 +4,9 @@
 // Formula  Hestenes and Stiefel's recurrences.
 // Singular A may be singular when a lies in its range (redundant rows without damping): the iterate is then a solution
 //          without null-space part. Stagnation is reported as not_converged with the backward error reached.
-// How      stops when the recurrence's residual falls below eps ‖a‖, or after 10 m + 50 iterations; the residual reported
-//          is recomputed. In exact arithmetic it ends with a zero residual after at most m iterations.
+// How      stops when the recurrence's residual falls below eps (λmax ‖f‖ + ‖a‖), λmax the largest Rayleigh quotient seen,
+//          or after 10 m + 50 iterations; then the residual is recomputed, and where rounding has left it larger the
+//          iteration starts again from it, up to three times. In exact arithmetic at most m iterations suffice.
 // Cost     per iteration one apply of aba_sweep + 10 m operations; about √κ(A) iterations.
 // Workspace  that of aba_sweep + 4 m.
 // Error    normwise κ(A).
@@ -19,6 +20,9 @@
 namespace delassus {
 
 template <class T> class Cg : public Operator<T> {
+ public:
+  static constexpr int max_starts = 3;
+
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;

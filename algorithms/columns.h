@@ -1,6 +1,8 @@
 // One kernel call per column, or per eight columns where the scalar has lanes.
 #pragma once
 
+#include <algorithm>
+
 #include "algorithms/delassus.h"
 #include "algorithms/six.h"
 
@@ -12,6 +14,19 @@ namespace delassus {
 /// Scalars for_columns needs when its kernel needs `values` values of V.
 template <class T> [[nodiscard]] Index columns_workspace(Index m, Index values, Index columns) {
   return has_lanes<T> && columns > 1 ? lane_count * (2 * padded(m) + values) : values;
+}
+
+/// Of the reports of two columns: the larger numbers, and the status of the first that is not ok.
+[[nodiscard]] inline Report worse(Report a, const Report& b) {
+  if (a.ok() && !b.ok()) {
+    a.status = b.status;
+    a.where = b.where;
+  }
+  a.iterations = std::max(a.iterations, b.iterations);
+  a.backward_error = std::max(a.backward_error, b.backward_error);
+  a.error_bound = std::max(a.error_bound, b.error_bound);
+  a.error_estimate = std::max(a.error_estimate, b.error_estimate);
+  return a;
 }
 
 /// Calls kernel(const V* x, V* y, V* work) on m contiguous values each, V = T for one column, lanes of T for more.

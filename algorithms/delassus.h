@@ -59,6 +59,9 @@ template <class T> class Operator {
   /// Bytes held by the operator after analyze, workspace not counted.
   [[nodiscard]] Index bytes() const;
   [[nodiscard]] const std::shared_ptr<const Structure>& structure() const { return structure_; }
+  /// Rows left out by the last update because they depend on the others and are hard (R⁻¹ = 0), ascending; empty for an
+  /// operator that does not decide ranks (see its row in the table).
+  [[nodiscard]] virtual const std::vector<Index>& dependent_rows() const;
 
  protected:
   // What an author writes. Shapes, phase and aliasing are already checked.
@@ -81,6 +84,7 @@ template <class T> class Operator {
 enum class ErrorClass : std::uint8_t {
   componentwise,  ///< forward error within the data's own componentwise sensitivity
   normwise,       ///< forward error within κ(A) · eps
+  refined,        ///< componentwise, or eps of the largest entry and eps in the energy norm, whichever is larger
   amplified,      ///< forward error R·λmax(Λ⁻¹) larger: the direct inversion-lemma formula
 };
 [[nodiscard]] std::string_view name(ErrorClass e);
@@ -93,6 +97,7 @@ struct OperatorRow {
   bool applies, solves;
   bool zero_damping;          ///< solve is defined when rows of R⁻¹ are zero (and A is regular)
   bool terminates_exactly;    ///< exact in exact arithmetic
+  bool decides_rank = false;  ///< solves a singular A too when a is in its range, and names the dependent rows
   ErrorClass apply_error, solve_error;
   std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>,
              Maker<PrimeField>>

@@ -1,27 +1,29 @@
 // lcaba_refined: lcaba with adaptive refinement on the KKT residual, and a certificate. The default inverse.
 //
 // What     f = Λ_R a to full accuracy wherever eps · R λmax(Λ⁻¹) < 1, with a rigorous error bound.
-// Formula  with r₁, r₂ of kkt_residual.h:  M_R δν = r₁ + JᵀR r₂,  δλ = R (r₂ − J δν),  ν += δν, λ += δλ.
-// Singular as lcaba. Refinement that stops contracting above its target is reported as not_converged.
-// How      same factor as lcaba; ν and λ are carried as Wide<T>. After step k the size d_k of the correction estimates the
-//          error before it; the error after it is about d_k · d_k/d_{k−1} (d_0 = 1), and steps end when that is below eps.
-// Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} at the final iterate, by one backward sweep of the factor
-//          of M; hence |δλ_i| ≤ √R_i B. error_bound is B relative to the energy norm of the solution.
+// Formula  (K) of refinement.h by the inversion lemma:  M_R δν = r₁ + JᵀR r₂,  δλ = R (r₂ − J δν).
+// Singular as lcaba. Refinement that has not reached its target after max_steps is reported as not_converged.
+// How      the factor of lcaba; the loop and the certificate of refinement.h. solve_to takes what accuracy is wanted.
 // Cost     update: lcaba + the factor of M; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
-// Workspace  that of lcaba + the residual's + 4 n + 6 m.
-// Error    componentwise: within the data's own sensitivity, when it reports ok.
-// Source   N. Higham, Accuracy and Stability, chapter 12, for refinement.
+// Workspace  that of lcaba + refinement's.
+// Error    refined: within the data's own sensitivity, or eps of the largest force and eps in the energy norm.
+// Source   paper, Algorithm 4; refinement.h.
 #pragma once
 
 #include "algorithms/delassus.h"
-#include "algorithms/factor.h"
-#include "algorithms/kkt_residual.h"
+#include "algorithms/refinement.h"
 
 namespace delassus {
 
 template <class T> class LcabaRefined : public Operator<T> {
  public:
   static constexpr int max_steps = 5;
+
+  /// One column to a wanted accuracy. Shapes m. `work` needs workspace() scalars.
+  Report solve_to(const T* a, T* f, Accuracy wanted, T* work) const;
+  /// What the last update came to.
+  [[nodiscard]] const Report& updated() const { return factored_; }
+  [[nodiscard]] const Refinement<T>& refinement() const { return refinement_; }
 
  protected:
   void do_analyze() override;
@@ -32,19 +34,11 @@ template <class T> class LcabaRefined : public Operator<T> {
   [[nodiscard]] Index do_bytes() const override;
 
  private:
-  using W = Wide<T>;
-  struct Buffers;  // one column's vectors in the workspace
-  Report solve_column(const T* a, T* f, T* workspace) const;
-  /// One correction; returns its size: the larger of max|δλ| / max|λ| and ‖δν‖_{M_R} / √(λᵀa).
-  double correct(Buffers& b, T* workspace) const;
-  double energy_norm(const Buffers& b) const;
-  /// B relative to the energy norm of (ν, λ).
-  double certify(Buffers& b, T* workspace) const;
+  void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
 
-  Plan plan_, plan_M_;
-  Factor<T> factor_, factor_M_;
-  BlockDiagonal<T> weights_;  // R
-  KktResidual<T> residual_;
+  Plan plan_;
+  Factor<T> factor_;
+  Refinement<T> refinement_;
   Report undamped_, factored_M_, factored_;
 };
 

@@ -83,6 +83,11 @@ template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Workspace<
 template <class T> Report Operator<T>::do_apply(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 template <class T> Report Operator<T>::do_solve(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 
+template <class T> const std::vector<Index>& Operator<T>::dependent_rows() const {
+  static const std::vector<Index> none;
+  return none;
+}
+
 template <class T> Index Operator<T>::workspace(Index columns) const {
   require(structure_ != nullptr, "Operator::workspace: call analyze first");
   return do_workspace(columns);

@@ -25,6 +25,7 @@ std::string_view name(ErrorClass e) {
   switch (e) {
     case ErrorClass::componentwise: return "componentwise";
     case ErrorClass::normwise: return "normwise";
+    case ErrorClass::refined: return "refined";
     case ErrorClass::amplified: return "amplified";
   }
   return "unknown";
@@ -50,7 +51,7 @@ const std::vector<OperatorRow>& operators() {
       {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate: the default",
        .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: algorithms/lcaba_refined.h",
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
-       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::componentwise,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
        .makers = makers<LcabaRefined>()},
       {.name = "cg", .summary = "conjugate gradients on aba_sweep",
        .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",

@@ -18,6 +18,7 @@ enum class Status : std::uint8_t {
   zero_damping,      ///< this form needs R⁻¹ > 0 and a row (or block) has a zero or singular one
   not_converged,     ///< an iteration ended above its target; the result is the best iterate
   not_finite,        ///< NaN or infinity in the data or in the right-hand side
+  inconsistent,      ///< A is singular and a is not in its range: dependent hard rows ask for different accelerations
   not_supported,     ///< the operator has no such function (see its row in the table)
 };
 
@@ -28,6 +29,7 @@ enum class Status : std::uint8_t {
     case Status::zero_damping: return "zero_damping";
     case Status::not_converged: return "not_converged";
     case Status::not_finite: return "not_finite";
+    case Status::inconsistent: return "inconsistent";
     case Status::not_supported: return "not_supported";
   }
   return "unknown";

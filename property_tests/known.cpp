@@ -54,6 +54,18 @@ const char* why_no_bound(Function f, const Case& c) {
 
 double condition(const Case& c) { return sensitivity(c)->condition(); }
 
+double product_condition(const Case& c) {
+  const VectorX<double> ones = VectorX<double>::Ones(c.rows());
+  const MatrixX<Quad>& A = quad_definition(Function::apply, c);
+  Quad norm(0);
+  for (Index r = 0; r < A.rows(); ++r) {
+    Quad sum(0);
+    for (Index k = 0; k < A.cols(); ++k) sum += abs(Quad(A(r, k)));
+    norm = std::max(norm, sum);
+  }
+  return sensitivity(c)->apply_sensitivity(ones).maxCoeff() / static_cast<double>(norm);
+}
+
 bool exactly_regular(const Case& c) {
   std::optional<bool>& known = c.known->exactly_regular;
   if (!known) known = reference::PivotedLdlt<Rational>(exact_definition(Function::apply, c)).regular();
@@ -90,6 +102,7 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
       const MatrixX<Quad> exact = reference::product<Quad>(quad_definition(f, c), converted<Quad>(MatrixX<double>(a)));
       for (Index r = 0; r < a.size(); ++r) lambda[r] = static_cast<double>(exact(r, 0));
       b = s.solve_sensitivity(a, lambda);
+      if (op.solve_error == ErrorClass::refined) b = s.solve_refined(a, lambda);
       if (op.solve_error == ErrorClass::normwise) b = s.solve_normwise(a, lambda);
       if (op.solve_error == ErrorClass::amplified) b += s.solve_amplified(a);
     }
@@ -103,6 +116,7 @@ std::string_view bound_name(Function f, const OperatorRow& op) {
   switch (op.solve_error) {
     case ErrorClass::componentwise: return "solve_sensitivity";
     case ErrorClass::normwise: return "solve_normwise";
+    case ErrorClass::refined: return "solve_refined";
     case ErrorClass::amplified: return "solve_amplified + solve_sensitivity";
   }
   return "solve_sensitivity";

@@ -43,6 +43,8 @@ struct Known {
 [[nodiscard]] const char* why_no_bound(Function f, const Case& c);
 /// κ_∞(A). Needs why_no_bound(solve) == nullptr.
 [[nodiscard]] double condition(const Case& c);
+/// ‖apply_sensitivity‖ / ‖A‖: how much less accurate a product A f is than one by the explicit matrix. Same need.
+[[nodiscard]] double product_condition(const Case& c);
 /// A is regular, decided in rational numbers.
 [[nodiscard]] bool exactly_regular(const Case& c);
 /// Every row has R⁻¹ > 0 (blocks positive definite).

@@ -1,5 +1,7 @@
 #include "reference/sensitivity.h"
 
+#include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -25,13 +27,63 @@ VectorX<Quad> quad(const Vector& x) {
   return y;
 }
 
-/// The problem with every number replaced by its absolute value: its J and M are J_abs and M_abs.
+/// The problem with every number replaced by its absolute value: its J is J_abs.
 Problem<double> absolute(Problem<double> p) {
   for (auto& s : p.S) s = s.cwiseAbs().eval();
   for (auto& h : p.H) h = h.cwiseAbs().eval();
   for (auto& k : p.K) k = k.cwiseAbs().eval();
   for (auto& k : p.joint_K) k = std::fabs(k);
   return p;
+}
+
+/// d with d_k² = Σ_i (|S_k|ᵀ h_i)² + armature, h_i = √diag H_i, over the bodies i that joint k moves: d_k d_l bounds every
+/// product |L||D||Lᵀ| that an L D Lᵀ factor of M forms, in joints or in bodies. Shape n. `p` holds absolute values.
+Vector scale_of_mass(const Problem<double>& p) {
+  const Structure& s = *p.structure;
+  Vector squares(s.dofs());
+  for (Index k = 0; k < s.dofs(); ++k) squares[k] = p.armature[k];
+  for (Index i = 0; i < s.bodies(); ++i) {
+    const Vector6<double> h = p.H[i].diagonal().cwiseSqrt();
+    for (const Index k : path_dofs(s, i)) squares[k] += std::pow(p.S[k].dot(h), 2);
+  }
+  return squares.cwiseSqrt();
+}
+
+/// Names of the connected parts of the pattern `related`: entry k is the smallest index joined to k. Shape n.
+std::vector<Index> components(const Matrix& related) {
+  std::vector<Index> name(static_cast<std::size_t>(related.rows()));
+  std::iota(name.begin(), name.end(), Index{0});
+  const auto root = [&](Index k) {
+    while (name[k] != k) k = name[k];
+    return k;
+  };
+  for (Index l = 0; l < related.cols(); ++l)
+    for (Index k = 0; k < related.rows(); ++k)
+      if (related(k, l) != 0) {
+        const Index a = root(k), b = root(l);
+        name[std::max(a, b)] = std::min(a, b);
+      }
+  for (Index k = 0; k < related.rows(); ++k) name[k] = root(k);
+  return name;
+}
+
+/// d dᵀ between indices of one component, 0 elsewhere.
+Matrix outer_within(const Vector& d, const std::vector<Index>& component) {
+  Matrix X(d.size(), d.size());
+  for (Index l = 0; l < d.size(); ++l)
+    for (Index k = 0; k < d.size(); ++k) X(k, l) = component[k] == component[l] ? d[k] * d[l] : 0;
+  return X;
+}
+
+/// d dᵀ between joints on one path, 0 elsewhere.
+Matrix outer_on_paths(const Vector& d, const Structure& s) {
+  Matrix X = Matrix::Zero(d.size(), d.size());
+  for (Index i = 0; i < s.bodies(); ++i) {
+    const std::vector<Index> path = path_dofs(s, i);
+    for (Index l = s.first_dof[i]; l < s.first_dof[i + 1]; ++l)
+      for (const Index k : path) X(k, l) = X(l, k) = d[k] * d[l];
+  }
+  return X;
 }
 
 double norm(const Matrix& X) { return X.size() == 0 ? 0 : X.rowwise().sum().maxCoeff(); }
@@ -41,7 +93,8 @@ double norm(const Vector& x) { return x.size() == 0 ? 0 : x.cwiseAbs().maxCoeff(
 
 struct Sensitivity::Data {
   Dense<Quad> dense;
-  Matrix J_abs, M_abs, M_inverse_abs, R_inverse_abs;
+  Matrix J_abs, M_bound, M_inverse_abs, R_inverse_abs;
+  Vector mass_scale;
 
   // A⁻¹ and what only the bounds of solve need.
   std::optional<PivotedLdlt<Quad>> A;
@@ -51,7 +104,7 @@ struct Sensitivity::Data {
   // R = (R⁻¹)⁻¹ and M_R = M + Jᵀ R J: what only the bound of the direct formula needs.
   struct Direct {
     MatrixX<Quad> R, MR_inverse;
-    Matrix R_abs, MR_inverse_abs, MR_abs;
+    Matrix R_abs, MR_inverse_abs, MR_bound;
   };
   std::optional<Direct> direct;
 
@@ -75,7 +128,9 @@ struct Sensitivity::Data {
       d.MR_inverse = PivotedLdlt<Quad>(MR).inverse();
       d.R_abs = magnitudes(d.R);
       d.MR_inverse_abs = magnitudes(d.MR_inverse);
-      d.MR_abs = M_abs + J_abs.transpose() * d.R_abs * J_abs;
+      const Matrix stiffness = J_abs.transpose() * d.R_abs * J_abs;
+      const Vector scale = (mass_scale.cwiseAbs2() + stiffness.diagonal()).cwiseSqrt();
+      d.MR_bound = outer_within(scale, components(M_bound + stiffness));
       direct = std::move(d);
     }
     return *direct;
@@ -88,7 +143,8 @@ Sensitivity::Sensitivity(const Problem<double>& problem, const Damping<double>& 
   d.dense = reference::dense(problem.cast<Quad>(), damping.cast<Quad>());
   const Problem<double> p = absolute(problem);
   d.J_abs = constraint_jacobian(p);
-  d.M_abs = mass_matrix(p);
+  d.mass_scale = scale_of_mass(p);
+  d.M_bound = outer_on_paths(d.mass_scale, *p.structure);
   d.M_inverse_abs = magnitudes(PivotedLdlt<Quad>(d.dense.M).inverse());
   d.R_inverse_abs = magnitudes(d.dense.R_inverse);
 }
@@ -105,7 +161,7 @@ VectorX<double> Sensitivity::apply_sensitivity(const VectorX<double>& x) const {
   const Data& d = *data_;
   const Vector force = d.J_abs.transpose() * x.cwiseAbs();
   const Vector rate = d.M_inverse_abs * force;                             // |M⁻¹| J_absᵀ |x|
-  const Vector change = rate + d.M_inverse_abs * (d.M_abs * rate);         // and through δM
+  const Vector change = rate + d.M_inverse_abs * (d.M_bound * rate);         // and through δM
   return d.J_abs * change + d.R_inverse_abs * x.cwiseAbs();
 }
 
@@ -128,6 +184,15 @@ VectorX<double> Sensitivity::solve_normwise(const VectorX<double>& a, const Vect
   return Vector::Constant(rows(), norm(data_->A_inverse_abs) * residual);
 }
 
+VectorX<double> Sensitivity::solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const {
+  Vector bound = solve_sensitivity(a, lambda);
+  const VectorX<Quad> diagonal = data_->direct_formula().R.diagonal();
+  const double energy = std::sqrt(std::fabs(a.dot(lambda)));  // ‖ν‖²_M + ‖λ‖²_{R⁻¹}
+  for (Index r = 0; r < rows(); ++r)
+    bound[r] += std::min(norm(lambda), std::sqrt(std::fabs(static_cast<double>(diagonal[r]))) * energy);
+  return bound;
+}
+
 VectorX<double> Sensitivity::solve_amplified(const VectorX<double>& a) const {
   require(a.size() == rows(), "Sensitivity: wrong number of rows");
   const Data::Direct& d = data_->direct_formula();
@@ -136,7 +201,7 @@ VectorX<double> Sensitivity::solve_amplified(const VectorX<double>& a) const {
   const MatrixX<Quad> nu_exact = product<Quad>(d.MR_inverse, product<Quad>(data_->dense.J.transpose(), Ra));
   const Vector nu = magnitudes(nu_exact);
   const Vector force = d.R_abs * a.cwiseAbs();                             // |R||a|
-  const Vector of_rate = d.MR_inverse_abs * (d.MR_abs * nu + J.transpose() * force);
+  const Vector of_rate = d.MR_inverse_abs * (d.MR_bound * nu + J.transpose() * force);
   return d.R_abs * (a.cwiseAbs() + J * (nu + of_rate));
 }
 

@@ -1,22 +1,28 @@
 // The named bounds of the verdict error / (eps · bound) < 30: what an error of one unit roundoff may come to.
 //
 // Every bound is a vector of m non-negative numbers, one per row, in the unit of the row it bounds. Absolute values
-// are taken entry by entry. With the sums over paths
-//   J_abs = Σ |K_e^i||S_k| (and |𝒦_i|),   M_abs = Σ_i |S_k|ᵀ|H_i||S_l| + armature
+// are taken entry by entry. With
+//   J_abs = Σ |K_e^i||S_k| (and |𝒦_i|) over paths,
+//   M_bound_kl = d_k d_l for joints k, l on one path, 0 otherwise;  d_k² = Σ_i (|S_k|ᵀ h_i)² + armature_k,  h_i = √diag H_i
 // a relative change of at most ε in every number of S, K, 𝒦, H, armature, R⁻¹ (a number may change differently on
-// every path it is used on) changes J by |δJ| ≤ 2ε J_abs, and M by |δM| ≤ 3ε M_abs, to first order. The factors 2 and 3
-// are left to the 30.
+// every path it is used on) changes J by |δJ| ≤ 2ε J_abs, and M by |δM| ≤ 3ε M_bound, to first order; and a factor
+// M = L D Lᵀ in rounded arithmetic, by joints or by bodies, is exact for some M + δM with |δM| ≤ c ε |L||D||Lᵀ| ≤ c ε M_bound
+// (Higham, Accuracy and Stability, section 10.1). The factors are left to the 30.
 //
 // apply    y = J M⁻¹ Jᵀ x + R⁻¹ x gives   δy = δJ M⁻¹Jᵀx + J M⁻¹ δJᵀ x − J M⁻¹ δM M⁻¹ Jᵀ x + δR⁻¹ x, hence
-//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_abs|M⁻¹|J_absᵀ|x| + |R⁻¹||x|.
+//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
 //            solve_normwise(a, λ) = ‖A⁻¹‖ ( ‖A‖ ‖λ‖ + ‖apply_sensitivity(λ)‖ + ‖a‖ ),  ∞-norms, the same on every row.
+// refined  refinement ends when the correction is below ε of the largest force and below ε in the energy norm
+//          ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa, in which |λ_r| ≤ √R_rr ‖·‖:
+//            solve_refined(a, λ) = solve_sensitivity(a, λ) + min( max|λ|, √R_rr √(λᵀa) ).
 // direct   the inversion-lemma formula λ = R a − R J ν with ν = M_R⁻¹ Jᵀ R a, M_R = M + Jᵀ R J, evaluated as it stands.
 //          Errors: of R a and of the difference, |R||a|; of J ν, J_abs|ν|; of ν, from M_R δν = δ(JᵀRa) − δM_R ν:
 //            solve_amplified(a) = |R| ( |a| + J_abs|ν|
-//                                      + J_abs|M_R⁻¹| ( (M_abs + J_absᵀ|R|J_abs)|ν| + J_absᵀ|R||a| ) ).
+//                                      + J_abs|M_R⁻¹| ( M_R_bound |ν| + J_absᵀ|R||a| ) ),
+//          M_R_bound_kl = D_k D_l for joints coupled by M or by a chain of constraints;  D_k² = d_k² + (J_absᵀ|R|J_abs)_kk.
 //          Against λ it grows as R·λmax(J M⁻¹ Jᵀ).
 //
 // M⁻¹, M_R⁻¹, A⁻¹, R, ν come from Quad and are rounded once to double; the sums that follow have non-negative terms
@@ -50,6 +56,8 @@ class Sensitivity {
   [[nodiscard]] VectorX<double> solve_sensitivity(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of λ in the sense of norms. Shapes m, all entries equal.
   [[nodiscard]] VectorX<double> solve_normwise(const VectorX<double>& a, const VectorX<double>& lambda) const;
+  /// Bound on the error of a refined solution. Shapes m. Needs R⁻¹ > 0, as solve_amplified does.
+  [[nodiscard]] VectorX<double> solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of the direct inversion-lemma formula. Needs R⁻¹ > 0, not A⁻¹. @throws std::runtime_error when
   /// a row or a block of R⁻¹ is singular. The first call costs n² m + n³ in Quad.
   [[nodiscard]] VectorX<double> solve_amplified(const VectorX<double>& a) const;

@@ -1,0 +1,137 @@
+// Refinement on the KKT residual, and its certificate: what every solve that keeps its promise of accuracy shares.
+//
+// What     from a correction (δν, δλ) ≈ solution of
+//            M δν − Jᵀδλ = r₁,   J δν + R⁻¹δλ = r₂                                                     (K)
+//          ν += δν, λ += δλ with the residual (r₁, r₂) of kkt_residual.h, until nothing is left to gain. Any solve of (K)
+//          serves: the inversion lemma, a QR factor, a dense one, one in float, one at another damping.
+// How      ν and λ are carried as Wide<T>. A correction measures the error before it: in the energy norm
+//            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to λᵀa,
+//          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
+//          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|.
+//          Steps end when that is below eps.
+// Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
+//          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B. error_bound is B relative to
+//          the energy norm of the solution, plus its rounding floor 2 eps. There is none where R⁻¹ has a zero.
+// Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual and half a sweep.
+// Workspace  4 n + 5 m, the residual's or the correction's.
+// Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "algorithms/columns.h"
+#include "algorithms/factor.h"
+#include "algorithms/kkt_residual.h"
+
+namespace delassus {
+
+/// What a solve is asked for: a bound on its error, relative, in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹}.
+struct Accuracy {
+  double error = 0;
+  /// All the digits the arithmetic has.
+  static constexpr Accuracy full() { return {0}; }
+  /// One evaluation, no residual, no certificate.
+  static constexpr Accuracy fastest() { return {std::numeric_limits<double>::infinity()}; }
+};
+
+template <class T> class Refinement {
+ public:
+  using W = Wide<T>;
+
+  void analyze(std::shared_ptr<const Structure> structure);
+  /// Report: lost_pivot of M.
+  [[nodiscard]] Report update(const Problem<T>& problem);
+  void update_damping(const Damping<T>& damping);
+
+  /// R, or in what row it does not exist.
+  [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
+  [[nodiscard]] const Report& invertible() const { return invertible_; }
+
+  /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
+  /// approximately; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
+  /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
+  /// accuracy was not reached, with the iterate it came to; not_finite.
+  template <class Correct>
+  Report solve(const T* a, T* f, Accuracy wanted, int most_steps, const Correct& correct, T* work, T* nu = nullptr) const;
+
+  [[nodiscard]] Index workspace(Index of_correction) const;
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  struct Buffers;
+  struct Progress {
+    double size = 1;      // of the last correction, relative: the error before it
+    double expected = 1;  // of the next one: the error now
+    double energy = 1, motion = 0, force = 0;  // of the last one: in the energy norm, max|δν|, max|δλ|
+  };
+  Progress advance(Buffers& b, const Progress& before) const;
+  double certify(Buffers& b) const;
+
+  std::shared_ptr<const Structure> structure_;
+  KktResidual<T> residual_;
+  Plan plan_M_;
+  Factor<T> factor_M_;
+  BlockDiagonal<T> weights_;
+  Report invertible_;
+};
+
+// One column's vectors; Wide ones first, so that everything stays aligned.
+template <class T> struct Refinement<T>::Buffers {
+  static constexpr Index wide = static_cast<Index>(sizeof(W) / sizeof(T));
+  Index n, m;
+  const T* a;
+  W *nu, *lambda;
+  T *d_nu, *r1, *d_lambda, *r2, *scratch;
+  T* rest;
+
+  Buffers(const Structure& s, const T* rhs, T* work) : n(s.dofs()), m(s.rows), a(rhs) {
+    nu = reinterpret_cast<W*>(work);
+    lambda = reinterpret_cast<W*>(work += wide * padded(n));
+    d_nu = work += wide * padded(m);
+    r1 = work += padded(n);
+    d_lambda = work += padded(n);
+    r2 = work += padded(m);
+    scratch = work += padded(m);
+    rest = work + padded(m);
+    std::fill(nu, nu + n, W(T(0)));
+    std::fill(lambda, lambda + m, W(T(0)));
+    std::fill(r1, r1 + n, T(0));
+    std::copy(a, a + m, r2);
+  }
+  static Index size(const Structure& s) { return (wide + 2) * padded(s.dofs()) + (wide + 3) * padded(s.rows); }
+};
+
+template <class T>
+template <class Correct>
+Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, int most_steps, const Correct& correct, T* work, T* nu) const {
+  Buffers b(*structure_, a, work);
+  correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
+  Progress now = advance(b, {});  // the first evaluation is the correction from zero
+  now.expected = now.energy = 1;
+
+  Report report;
+  while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
+    residual_.evaluate(b.nu, b.lambda, b.a, b.r1, b.r2, b.rest);
+    const bool done = now.expected <= unit_roundoff<T>;
+    if (done || wanted.error > 0) report.error_bound = certify(b);
+    if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
+    if (report.iterations == most_steps) {
+      report.error_bound = certify(b);
+      report.status = Status::not_converged;
+      break;
+    }
+    correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
+    ++report.iterations;
+    now = advance(b, now);
+    report.error_estimate = now.size;
+  }
+  if (!std::isfinite(now.size)) report.status = Status::not_finite;
+  if (report.ok() && wanted.error > 0 && report.error_bound > wanted.error) report.status = Status::not_converged;
+  for (Index r = 0; r < b.m; ++r) f[r] = narrow<T>(b.lambda[r]);
+  if (nu != nullptr)
+    for (Index c = 0; c < b.n; ++c) nu[c] = narrow<T>(b.nu[c]);
+  return report;
+}
+
+}  // namespace delassus
