@@ -4,7 +4,8 @@
 //          neighbour n of the rounded r with probability |e| / |n − r|, e the exact error of r by an error-free
 //          transformation. What an operation loses thus shows as a difference of the samples.
 // Why not  one of the two with probability 1/2 each (CESTAC as first published): its expectation is off by up to half a
-//          unit in the last place whenever e has a preferred value. Here the expectation of every operation is its exact
+//          unit in the last place whenever e has a preferred value (difference of two sums of 1/k, k ≤ 200: 30 % of the
+//          intervals miss zero, instead of 5 %). Here the expectation of every operation is its exact
 //          result, as Student's test supposes, exact operations stay exact, and the variance is never below the square
 //          of the error of rounding to nearest: x(1 − x) ≥ min(x, 1 − x)² units².
 // Digits   log10(√3 |mean| / (τ s)), s the deviation of the samples, τ = 4.303 (95 %, two degrees of freedom): with 95 %

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
-#include "algorithms/lcaba.h"
+#include "algorithms/delassus.h"
+#include "algorithms/factor.h"
 #include "generators/random.h"
 #include "models/scene.h"
 #include "reference/definition.h"
@@ -88,37 +90,39 @@ TEST(Stochastic, SameSeedSameSamples) {
   EXPECT_NE(tenth_sum(3), tenth_sum(4));
 }
 
-/// What `runs` solves of go2_standing say: each with its own damping (one to two times `base`) and accelerations.
+/// What `runs` computations on go2_standing say: each with its own damping (one to two times `base`) and vector.
 struct Truth {
   double outside = 0;    ///< share of rows whose Student interval misses the exact result
-  double overstated = 0, understated = 0;  ///< share of rows where lcaba in double has fewer, or more, digits than shown
+  double overstated = 0, understated = 0;  ///< share of rows where the operator in double has fewer, or more, digits than shown
 };
 
-// Shown: C = log10(√3 |f| / (τ s)). True, for lcaba in double with error e: −log10(|e| / |f|) = C + log10(τ s / (√3 |e|)).
+// Shown: C = log10(√3 |f| / (τ s)). True, for aba_sweep or lcaba in double with error e: −log10(|e| / |f|) = C + log10(τ s / (√3 |e|)).
 // Were e drawn like a sample, t = e / s would follow Student's law with two degrees of freedom, |t| ≤ x with probability
 // x / √(2 + x²): |t| ∈ [0.0354, 6.205] in 95 % of rows, 2.5 % on each side. Rounding to nearest has at most the deviation of
 // a sample: operation by operation its mean square is half of it (1/12 and 1/6 units²), and a fused operation leaves one of two
 // roundings out: at least a quarter of the variance in all, half of the deviation. Hence
 //   C + log10(τ/√3) − log10(6.205)  ≤  true  ≤  C + log10(τ/√3) − log10(0.0354 / 2)    except in 2.5 % on each side.
-Truth truth(double base) {
+Truth truth(Computation computation, double base) {
+  const bool apply = computation == Computation::apply;
   const Scene scene = open_scene("go2_standing");
   const Problem<double> problem = problem_of(scene);
   const Problem<Quad> quad = problem.cast<Quad>();
   const Index m = problem.structure->rows;
   const double shift = std::log10(4.302652729911275 / std::sqrt(3.0));
   generators::Random random(7);
-  Lcaba<double> op;
-  op.analyze(problem.structure);
-  Workspace<double> work(op.workspace());
+  const auto op = find_operator(apply ? "aba_sweep" : "lcaba").make<double>();
+  op->analyze(problem.structure);
+  Workspace<double> work(op->workspace());
   Truth t;
   for (int run = 0; run < runs; ++run) {
     const auto damping = Damping<double>::uniform(m, base * (1 + random.integer(0, 999) / 1000.0));
     MatrixX<double> a(m, 1), f(m, 1);
     for (Index r = 0; r < m; ++r) a(r, 0) = random.integer(-1000, 1000) / 1000.0;
-    const MatrixX<Quad> exact = reference::dense_solve(reference::dense(quad, damping.cast<Quad>()), MatrixX<Quad>(a.cast<Quad>()));
-    EXPECT_TRUE(op.update(problem, damping).ok());
-    EXPECT_TRUE(op.solve(a, f, work).ok());
-    const Measured shown = measure(problem, damping, a.col(0), Computation::solve, static_cast<std::uint64_t>(run + 1));
+    const auto dense = reference::dense(quad, damping.cast<Quad>());
+    const MatrixX<Quad> given = a.cast<Quad>(), exact = apply ? reference::dense_apply(dense, given) : reference::dense_solve(dense, given);
+    EXPECT_TRUE(op->update(problem, damping).ok());
+    EXPECT_TRUE((apply ? op->apply(a, f, work) : op->solve(a, f, work)).ok());
+    const Measured shown = measure(problem, damping, a.col(0), computation, static_cast<std::uint64_t>(run + 1));
     EXPECT_TRUE(shown.report.ok());
     for (Index r = 0; r < m; ++r) {
       const Stochastic& s = shown.result[static_cast<std::size_t>(r)];
@@ -134,21 +138,25 @@ Truth truth(double base) {
   return t;
 }
 
-TEST(Digits, OfTheDirectFormulaAreThoseAgainstTheReference) {
+void expect_true_digits(Computation computation, double damping) {
   const double most_beyond = 0.025 + 3 * std::sqrt(0.025 * 0.975 / runs);
-  for (const double damping : {1e-4, 1e-8}) {
-    const Truth t = truth(damping);
-    EXPECT_LE(t.outside, most_outside) << damping;
-    EXPECT_LE(t.overstated, most_beyond) << damping;
-    EXPECT_LE(t.understated, most_beyond) << damping;
-    RecordProperty("shares at " + std::to_string(damping),
-                   std::to_string(t.outside) + " " + std::to_string(t.overstated) + " " + std::to_string(t.understated));
-  }
+  const Truth t = truth(computation, damping);
+  EXPECT_LE(t.outside, most_outside) << damping;
+  EXPECT_LE(t.overstated, most_beyond) << damping;
+  EXPECT_LE(t.understated, most_beyond) << damping;
+  std::printf("damping %g: outside %.4f (at most %.4f), overstated %.4f, understated %.4f (at most %.4f)\n", damping, t.outside,
+              most_outside, t.overstated, t.understated, most_beyond);
 }
+
+TEST(Digits, OfTheDirectFormulaAreThoseAgainstTheReference) {
+  for (const double damping : {1e-4, 1e-8}) expect_true_digits(Computation::solve, damping);
+}
+
+TEST(Digits, OfTheOperatorAreThoseAgainstTheReference) { expect_true_digits(Computation::apply, 1e-4); }
 
 TEST(Digits, WithoutRandomRoundingAreFoundWrong) {
   const Deterministic defect;
-  const Truth t = truth(1e-4);
+  const Truth t = truth(Computation::solve, 1e-4);
   EXPECT_GT(t.outside, most_outside);
   EXPECT_GT(t.overstated, most_outside);
 }
@@ -209,6 +217,28 @@ TEST(Digits, CostIsThatOfTheLightBodysStep) {
     EXPECT_LT(m.stages[0].cost, clear_cost);
   }
   EXPECT_EQ(found, seeds);
+}
+
+// What is measured is Factor itself: rounding to nearest, the steps taken one by one give its project to the bit.
+TEST(Digits, AreMeasuredOnTheFactorThatShips) {
+  const Deterministic nearest;
+  const Scene scene = open_scene("go2_standing");
+  const Problem<double> problem = problem_of(scene);
+  const auto m = static_cast<std::size_t>(problem.structure->rows);
+  const auto damping = Damping<double>::uniform(problem.structure->rows, 1e-6);
+  const Plan plan = make_plan(*problem.structure, Matrix::M_R, Branches::all);
+  Factor<Stochastic> factor;
+  BlockDiagonal<Stochastic> weights;
+  factor.analyze(*problem.structure, plan);
+  weights.analyze(*problem.structure);
+  ASSERT_TRUE(weights.assign_inverse(damping.cast<Stochastic>()).ok());
+  ASSERT_TRUE(factor.start(problem.cast<Stochastic>()).ok());
+  ASSERT_TRUE(factor.update_weights(weights).ok());
+  std::vector<Stochastic> x(m, 1), scaled(m), y(m), work(static_cast<std::size_t>(factor.workspace()));
+  weights.multiply(x.data(), scaled.data());
+  factor.project(scaled.data(), y.data(), work.data());
+  const Measured shown = measure(problem, damping, VectorX<double>::Ones(problem.structure->rows), Computation::solve, 1);
+  for (std::size_t r = 0; r < m; ++r) EXPECT_EQ(shown.motion[r].v, y[r].v) << r;
 }
 
 TEST(Digits, NumericalOutcomesAreReports) {
