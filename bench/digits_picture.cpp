@@ -1,5 +1,6 @@
 #include "bench/digits_picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -40,7 +41,7 @@ const char* const style = R"css(<style>
 .picture .leader{stroke-width:.8}
 .picture circle.disc{fill:#fff;stroke:#000;stroke-width:1.2}
 .picture text.disc{font-size:12.5px;font-weight:700;text-anchor:middle}
-.picture text.title{font-size:15px;font-weight:700}
+.picture text.title{font-weight:700}
 .picture text.panel{font-size:14px;font-weight:600}
 .picture text.key{font-size:13px}
 .picture text.scale{font-size:12px}
@@ -59,7 +60,8 @@ std::string header(const std::string& title) {
     const double x = 14 + 91 * static_cast<double>(k);
     keys += format("<path class=\"d%zu\" d=\"M%.0f,35h26v17h-26z\"/><text class=\"key\" x=\"%.0f\" y=\"49\">%s</text>", k, x, x + 32, l.text);
   }
-  return rules + "</style>" + defs + "</defs><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/><text class=\"title\" x=\"14\" y=\"22\">" +
+  return rules + "</style>" + defs + "</defs><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
+         format("<text class=\"title\" x=\"14\" y=\"22\" font-size=\"%.1f\">", std::min(15.0, 720.0 / static_cast<double>(title.size()))) +
          escape(title) + "</text>" + keys;
 }
 
