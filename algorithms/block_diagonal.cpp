@@ -61,8 +61,18 @@ template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
   }
 }
 
-template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& damping) {
+template <class T> void BlockDiagonal<T>::add_to_diagonal(const T* shift) {
+  for (std::size_t e = 0; e < rows_.size(); ++e)
+    for (Index r = 0; r < rows_[e].count; ++r) {
+      const Index row = rows_[e].first + r;
+      if (has_dense_[e]) dense_[first_[e] + r * rows_[e].count + r] += shift[row];
+      else diagonal_[row] += shift[row];
+    }
+}
+
+template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& damping, const T* shift) {
   assign(damping);
+  if (shift != nullptr) add_to_diagonal(shift);
   for (std::size_t e = 0; e < rows_.size(); ++e) {
     const auto [row, m] = rows_[e];
     if (has_dense_[e]) {  // R_e = (R_e⁻¹)⁻¹ by LDLᵀ

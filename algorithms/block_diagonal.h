@@ -2,6 +2,7 @@
 // No allocation after analyze, whatever blocks a Damping brings.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "algorithms/ldlt.h"
@@ -15,7 +16,15 @@ template <class T> class BlockDiagonal {
   /// Holds R⁻¹.
   void assign(const Damping<T>& damping);
   /// Holds R. Report: zero_damping with the first row whose damping is zero or whose block is singular.
-  [[nodiscard]] Report assign_inverse(const Damping<T>& damping);
+  /// With `shift` (m, ≥ 0): holds (R⁻¹ + diag shift)⁻¹.
+  [[nodiscard]] Report assign_inverse(const Damping<T>& damping, const T* shift = nullptr);
+  /// The entries of another one of the same structure, rounded to T.
+  template <class U> void round(const BlockDiagonal<U>& other) {
+    std::copy(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin());
+    std::copy(other.dense_.begin(), other.dense_.end(), dense_.begin());
+    has_dense_ = other.has_dense_;
+    any_dense_ = other.any_dense_;
+  }
 
   [[nodiscard]] const T& diagonal(Index row) const { return diagonal_[row]; }
   /// The block of constraint e (link constraints first, then joint constraints), rows × rows, or nullptr when diagonal.
@@ -36,7 +45,8 @@ template <class T> class BlockDiagonal {
   [[nodiscard]] Index bytes() const;
 
  private:
-
+  template <class U> friend class BlockDiagonal;
+  void add_to_diagonal(const T* shift);
   struct Rows {
     Index first, count;
   };

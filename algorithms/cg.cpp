@@ -18,50 +18,58 @@ template <class X, class Y> auto inner(const X& x, const Y& y) {
 
 }  // namespace
 
-template <class T> void Cg<T>::do_analyze() {
-  plan_ = make_plan(*this->structure(), Matrix::M);
+template <class T, class P> void CgWith<T, P>::do_analyze() {
+  plan_ = make_plan(*this->structure(), Matrix::M, plain ? Branches::with_rows : Branches::all);
   factor_.analyze(*this->structure(), plan_);
   damping_.analyze(*this->structure());
+  preconditioner_.analyze(*this->structure());
 }
 
-template <class T> Report Cg<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  damping_.assign(damping);
+template <class T, class P> Report CgWith<T, P>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   factored_ = factor_.start(problem);
   if (factored_.ok()) factored_ = factor_.update_undamped();
-  return factored_;
+  undamped_ = factored_.ok() ? preconditioner_.update(problem, factor_) : factored_;
+  return do_update_damping(damping);
 }
 
-template <class T> Report Cg<T>::do_update_damping(const Damping<T>& damping) {
+template <class T, class P> Report CgWith<T, P>::do_update_damping(const Damping<T>& damping) {
   damping_.assign(damping);
-  return factored_;
+  preconditioned_ = undamped_.ok() ? preconditioner_.update_damping(damping) : undamped_;
+  return factored_;  // apply is defined without the preconditioner; solve reports it
 }
 
 // y = (J M⁻¹ Jᵀ + R⁻¹) x
-template <class T> void Cg<T>::multiply(const T* x, T* y, T* workspace) const {
+template <class T, class P> void CgWith<T, P>::multiply(const T* x, T* y, T* workspace) const {
   T* const damped = workspace + factor_.workspace();
   factor_.project(x, y, workspace);
   damping_.multiply(x, damped);
   for (Index r = 0; r < this->size(); ++r) y[r] += damped[r];
 }
 
-template <class T> Report Cg<T>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {
+template <class T, class P> Report CgWith<T, P>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {
   if (!factored_.ok()) return factored_;
   for (Index c = 0; c < f.cols(); ++c)
     multiply(f.data() + c * f.outerStride(), a.data() + c * a.outerStride(), workspace);
   return {};
 }
 
-template <class T> Report Cg<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
+template <class T, class P> Report CgWith<T, P>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
   if (!factored_.ok()) return factored_;
+  if (!preconditioned_.ok()) return preconditioned_;
   Report worst;
   for (Index c = 0; c < a.cols(); ++c)
     worst = worse(worst, solve_column(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), workspace));
   return worst;
 }
 
-template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) const {
+template <class T, class P> void CgWith<T, P>::precondition(const T* r, T* z, T* work) const {
+  if constexpr (!plain) preconditioner_.solve_kkt(nullptr, r, nullptr, z, work);
+}
+
+template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, T* workspace) const {
   const Index m = this->size();
-  T* const inner_work = workspace + 3 * padded(m);
+  T* const z = plain ? workspace : workspace + 3 * padded(m);  // P r; r itself
+  T* const inner_work = workspace + (plain ? 3 : 4) * padded(m);
   ConstMap<T> b(a, m);
   Map<T> x(f, m), r(workspace, m), p(workspace + padded(m), m), q(workspace + 2 * padded(m), m);
   const T eps_squared = T(unit_roundoff<T>) * T(unit_roundoff<T>), bb = inner(b, b);
@@ -72,8 +80,9 @@ template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) co
   r = b;
   const Index limit = 10 * m + 50;
   for (int start = 0; start < max_starts; ++start) {
-    p = r;
-    T rr = inner(r, r);
+    precondition(r.data(), z, inner_work);
+    p = Map<T>(z, m);
+    T rr = inner(r, r), rz = inner(r, Map<T>(z, m));
     const auto small_enough = [&] { return !(rr > eps_squared * (largest * largest * inner(x, x) + bb)); };
     while (!small_enough() && report.iterations < limit) {
       multiply(p.data(), q.data(), inner_work);                 // q = A p
@@ -81,12 +90,16 @@ template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) co
       if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
       const T quotient = pq / inner(p, p);
       if (quotient > largest) largest = quotient;
-      const T alpha = rr / pq;                                  // α = rᵀr / pᵀAp
+      const T alpha = rz / pq;                                  // α = rᵀz / pᵀAp
       x += p * alpha;
       r -= q * alpha;
-      const T next = inner(r, r);
-      p = r + p * T(next / rr);                                 // p = r + β p
-      rr = next;
+      rr = inner(r, r);
+      precondition(r.data(), z, inner_work);                    // z = P r
+      const T next = inner(r, Map<T>(z, m));
+      // β = rᵀz / (rᵀz before); with P in float, zᵀ(r − r before): P need not be the same from step to step
+      const T beta = plain ? T(next / rz) : T(-alpha * inner(q, Map<T>(z, m)) / rz);
+      p = Map<T>(z, m) + p * beta;
+      rz = next;
       ++report.iterations;
     }
     multiply(x.data(), q.data(), inner_work);
@@ -102,13 +115,17 @@ template <class T> Report Cg<T>::solve_column(const T* a, T* f, T* workspace) co
   return report;
 }
 
-template <class T> Index Cg<T>::do_workspace(Index) const {
-  return factor_.workspace() + 4 * padded(this->size());
+template <class T, class P> Index CgWith<T, P>::do_workspace(Index) const {
+  return std::max(factor_.workspace() + padded(this->size()), preconditioner_.workspace()) + 4 * padded(this->size());
 }
 
-template <class T> Index Cg<T>::do_bytes() const { return plan_.bytes() + factor_.bytes() + damping_.bytes(); }
+template <class T, class P> Index CgWith<T, P>::do_bytes() const { return plan_.bytes() + factor_.bytes() + damping_.bytes() + preconditioner_.bytes(); }
 
-#define DELASSUS_INSTANTIATE(T) template class Cg<T>;
+#define DELASSUS_INSTANTIATE(T) template class CgWith<T, NoPreconditioner<T>>;
 DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
+template class CgWith<double, CappedInverse<double, float>>;
+template class CgWith<float, CappedInverse<float, float>>;
+template class CgWith<Quad, CappedInverse<Quad, Quad>>;
+template class CgWith<Counted, CappedInverse<Counted, Counted>>;
 
 }  // namespace delassus

@@ -40,6 +40,11 @@ template <class T> class Factor {
   /// freedom; ν may be nullptr. Returns (Jᵀx + τ)ᵀ M_R⁻¹ (Jᵀx + τ), the squared energy norm of ν.
   T solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
 
+  /// d_r ≥ (J M⁻¹Jᵀ)_rr, equal for rows on one body or joint, at most k times it and twice the mixed terms for k links: from
+  /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M, every joint
+  /// active. `omega` is scratch, one per body. Cost about 300 operations per body. Shape m.
+  void row_mobility(T* d, SixBySix<T>* omega) const;
+
   [[nodiscard]] Index workspace() const;  ///< values of V
   [[nodiscard]] Index bytes() const;
 

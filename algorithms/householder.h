@@ -34,28 +34,31 @@ template <class T> [[nodiscard]] inline Six<T> squared_norms(const Six<T>* rows,
   return sum;
 }
 
-/// rows ← (1 − β v vᵀ) rows; returns the squared norms of its columns, row 0 left out.
-template <class T> inline Six<T> reflect(Six<T>* rows, const T* v, const T& beta, int count) {
+/// rows ← (1 − β v vᵀ) rows; returns the squared norms of its columns, row `pivot` left out.
+template <class T> inline Six<T> reflect(Six<T>* rows, const T* v, const T& beta, int count, int pivot) {
   Six<T> even = Six<T>::zero(), odd = even, norms = even;  // two sums: a chain of additions would set the pace
-  int r = 0;
-  for (; r + 1 < count; r += 2) {
+  for (int r = 0; r + 1 < count; r += 2) {
     add_scaled(even, rows[r], v[r]);
     add_scaled(odd, rows[r + 1], v[r + 1]);
   }
-  if (r < count) add_scaled(even, rows[r], v[r]);
+  if (count % 2 != 0) add_scaled(even, rows[count - 1], v[count - 1]);
   add(even, odd);
   scale(even, beta);
-  subtract_scaled(rows[0], even, v[0]);
-  for (r = 1; r < count; ++r) {
-    subtract_scaled(rows[r], even, v[r]);
-    add_squares(norms, rows[r]);
-  }
+  const auto update = [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) {
+      subtract_scaled(rows[r], even, v[r]);
+      add_squares(norms, rows[r]);
+    }
+  };
+  update(0, pivot);
+  subtract_scaled(rows[pivot], even, v[pivot]);
+  update(pivot + 1, count);
   return norms;
 }
 
 using UnalignedLanes8 = double __attribute__((vector_size(64), aligned(8)));
 
-/// x ← (1 − β v vᵀ) x for numbers; x and v are readable up to the next multiple of eight, where v is zero.
+/// x ← (1 − β v vᵀ) x for numbers; x and v go on to the next multiple of eight, where v is zero.
 template <class T> inline void reflect(T* x, const T* v, const T& beta, int count) {
   if constexpr (std::is_same_v<T, double>) {
     auto* const xs = reinterpret_cast<UnalignedLanes8*>(x);
@@ -75,24 +78,46 @@ template <class T> inline void reflect(T* x, const T* v, const T& beta, int coun
   }
 }
 
-/// `blocks` blocks of `rows` rows each, block b at data + b · stride. Rows move up as they become pivots: order[r] is
-/// where row r stood at first. v is scratch of `rows` numbers.
+/// The index of the largest entry of v in magnitude; v as above.
+template <class T> [[nodiscard]] inline int largest_entry(const T* v, int count) {
+  using std::abs;
+  int largest = 0;
+  if constexpr (std::is_same_v<T, double>) {
+    const auto* const vs = reinterpret_cast<const UnalignedLanes8*>(v);
+    const auto magnitude = [&](int k) { const Lanes8 x = vs[k]; return Lanes8(x < 0 ? -x : x); };
+    Lanes8 best = magnitude(0), chunk{};  // by lane: the largest, and the chunk it is in
+    for (int k = 1; k < (count + 7) / 8; ++k) {
+      const Lanes8 next = magnitude(k), here = Lanes8{} + k;
+      chunk = next > best ? here : chunk;
+      best = next > best ? next : best;
+    }
+    int lane = 0;
+    for (int l = 1; l < 8; ++l)
+      if (best[l] > best[lane]) lane = l;
+    largest = 8 * static_cast<int>(chunk[lane]) + lane;
+  } else {
+    for (int r = 1; r < count; ++r)
+      if (T(abs(v[r])) > T(abs(v[largest]))) largest = r;
+  }
+  return largest;
+}
+
+/// `blocks` blocks of `rows` rows each, block b at data + b · stride. A row that has become a pivot is taken out: zero.
 template <class T> struct Strip {
   Six<T>* data;
   Index stride;
   int blocks, rows;
-  int* order;
-  T* v;
 
   [[nodiscard]] Six<T>* block(int b) const { return data + b * stride; }
 };
 
-/// The reflections of one strip: the vector of reflection t is at v + t · stride, in the first order of the rows and zero
-/// for the pivots before it. T is const where they are only applied.
+/// The reflections of one strip, in the order of its rows: the vector of reflection t is at v + t · stride, zero for the
+/// rows taken before and from the last row to the stride; its pivot is row pivot[t]. T is const where they are applied.
 template <class T> struct Reflections {
   T* v;
   Index stride;
   T* beta;
+  std::conditional_t<std::is_const_v<T>, const int, int>* pivot;
 
   [[nodiscard]] T* vector(int t) const { return v + t * stride; }
   /// x ← H_count−1 … H_0 x, and its inverse. x has `rows` numbers.
@@ -104,50 +129,37 @@ template <class T> struct Reflections {
   }
 };
 
-/// Exchanges two rows in the blocks from b on.
-template <class T> inline void exchange(const Strip<T>& strip, int b, int to, int from) {
-  std::swap(strip.order[to], strip.order[from]);
-  for (int i = b; i < strip.blocks; ++i) std::swap(strip.block(i)[to], strip.block(i)[from]);
-}
-
-/// Reduces `columns` columns of block b to triangular form in rows top, top + 1, …; lane[k] is the column reduced k-th.
+/// Reduces `columns` columns of block b, one by one: column lane[k] to nothing but its pivot, by reflection t + k. The
+/// pivot's row is then complete: take(k, row) must copy it from blocks b, b + 1, … and leave zeros there. In block b it
+/// holds for lane[k], lane[k + 1], … only.
 /// least_squared[c]: a column c whose remaining squared norm does not exceed it has no numerical support. Returns the
 /// number of columns reduced; it is less than `columns` when the next best one, lane[that number], has no support.
-/// Blocks before b, and in block b what lies below a pivot, are not kept up.
-template <class T>
-int triangularise(const Strip<T>& strip, int b, int top, int columns, const T* least_squared, const Reflections<T>& kept,
-                  int* lane) {
+template <class T, class Take>
+int triangularise(const Strip<T>& strip, int b, int columns, const T* least_squared, const Reflections<T>& kept, int t,
+                  int* lane, Take&& take) {
   using std::abs;
   using std::sqrt;
   Six<T>* const rows = strip.block(b);
-  T* const v = strip.v;
   for (int k = 0; k < columns; ++k) lane[k] = k;
-  Six<T> norms = squared_norms(rows + top, strip.rows - top);
-  for (int k = 0; k < columns; ++k, ++top) {
-    const int count = strip.rows - top;
+  Six<T> norms = squared_norms(rows, strip.rows);
+  for (int k = 0; k < columns; ++k, ++t) {
     for (int c = k + 1; c < columns; ++c)
       if (norms[lane[c]] > norms[lane[k]]) std::swap(lane[k], lane[c]);
     const int j = lane[k];
     const T squared = norms[j];
-    if (count == 0 || !ScalarTraits<T>::usable_pivot(squared) || !(squared > least_squared[j])) return k;
+    if (!ScalarTraits<T>::usable_pivot(squared) || !(squared > least_squared[j])) return k;
 
-    int largest = 0;
-    for (int r = 0; r < count; ++r) {
-      v[r] = rows[top + r][j];
-      if (T(abs(v[r])) > T(abs(v[largest]))) largest = r;
-    }
-    std::swap(v[0], v[largest]);
-    exchange(strip, b, top, top + largest);
-    const T norm = sqrt(squared), x0 = v[0];
-    v[0] = x0 < T(0) ? x0 - norm : x0 + norm;
-    const T beta = kept.beta[top] = T(1) / (norm * T(abs(v[0])));
-    T* const vector = kept.vector(top);
-    std::fill_n(vector, kept.stride, T(0));
-    for (int r = 0; r < count; ++r) vector[strip.order[top + r]] = v[r];
-
-    if (k + 1 < columns) norms = reflect(rows + top, v, beta, count);
-    rows[top].v[j] = x0 < T(0) ? norm : -norm;
-    for (int i = b + 1; i < strip.blocks; ++i) reflect(strip.block(i) + top, v, beta, count);
+    T* const v = kept.vector(t);
+    for (int r = 0; r < strip.rows; ++r) v[r] = rows[r][j];
+    std::fill(v + strip.rows, v + kept.stride, T(0));
+    const int pivot = kept.pivot[t] = largest_entry(v, strip.rows);
+    const T norm = sqrt(squared), x = v[pivot];
+    v[pivot] = x < T(0) ? x - norm : x + norm;
+    const T beta = kept.beta[t] = T(1) / (norm * T(abs(v[pivot])));
+    if (k + 1 < columns) norms = reflect(rows, v, beta, strip.rows, pivot);
+    rows[pivot].v[j] = x < T(0) ? norm : -norm;
+    for (int i = b + 1; i < strip.blocks; ++i) reflect(strip.block(i), v, beta, strip.rows, pivot);
+    take(k, pivot);
   }
   return columns;
 }

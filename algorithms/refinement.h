@@ -47,6 +47,8 @@ template <class T> class Refinement {
   /// R, or in what row it does not exist.
   [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
   [[nodiscard]] const Report& invertible() const { return invertible_; }
+  /// The factor of M, every joint active.
+  [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
   /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).

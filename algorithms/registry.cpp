@@ -2,8 +2,11 @@
 #include "algorithms/aba_sweep.h"
 #include "algorithms/cg.h"
 #include "algorithms/dense_cholesky.h"
+#include "algorithms/kkt_elimination.h"
 #include "algorithms/lcaba.h"
+#include "algorithms/lcaba_qr.h"
 #include "algorithms/lcaba_refined.h"
+#include "algorithms/proximal.h"
 
 namespace delassus {
 namespace {
@@ -12,6 +15,9 @@ template <template <class> class Op, class T> std::unique_ptr<Operator<T>> make(
 
 template <template <class> class Op> constexpr decltype(OperatorRow::makers) ordered_makers() {
   return {make<Op, double>, make<Op, float>, make<Op, Quad>, make<Op, Counted>, make<Op, Rational>, nullptr};
+}
+template <template <class> class Op> constexpr decltype(OperatorRow::makers) makers_with_roots() {
+  return {make<Op, double>, make<Op, float>, make<Op, Quad>, make<Op, Counted>, nullptr, nullptr};
 }
 template <template <class> class Op> constexpr decltype(OperatorRow::makers) makers() {
   auto all = ordered_makers<Op>();
@@ -53,10 +59,39 @@ const std::vector<OperatorRow>& operators() {
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
        .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
        .makers = makers<LcabaRefined>()},
+      {.name = "lcaba_qr", .summary = "square-root elimination: accurate however stiff or redundant the constraints",
+       .formula = "min ‖ν‖²_M + ‖a − J ν‖²_R, f read from its residual", .source = "algorithms/square_root_factor.h",
+       .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = false, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = makers_with_roots<LcabaQr>()},
+      {.name = "lcaba_float", .summary = "lcaba in float with capped stiffness, refined in double",
+       .formula = "as lcaba_refined with R₀⁻¹ = R⁻¹ + diag(d)/2¹⁰ in float", .source = "algorithms/proximal.h",
+       .cost = "O((n + m) steps)", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = {make<LcabaFloat, double>, nullptr, nullptr, nullptr, nullptr, nullptr}},
+      {.name = "proximal", .summary = "hard constraints by proximal iterations on lcaba",
+       .formula = "as lcaba_refined with R₀⁻¹ = R⁻¹ + diag(d)/2²⁰", .source = "Rockafellar 1976; algorithms/proximal.h",
+       .cost = "O((n + m) steps)", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = makers_with_roots<Proximal>()},
+      {.name = "kkt_elimination", .summary = "multipliers kept to the end; finds the rank and names dependent rows",
+       .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/kkt_elimination.h",
+       .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .decides_rank = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = ordered_makers<KktElimination>()},
+      {.name = "dense_refined", .summary = "the same for regular A: a dense factor with refinement and certificate",
+       .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/kkt_elimination.h",
+       .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .makers = ordered_makers<DenseRefined>()},
       {.name = "cg", .summary = "conjugate gradients on aba_sweep",
        .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
        .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
        .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .makers = ordered_makers<Cg>()},
+      {.name = "cg_preconditioned", .summary = "conjugate gradients preconditioned by lcaba in float",
+       .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952; algorithms/capped_inverse.h",
+       .cost = "O((n + m) √κ(P A))", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise,
+       .makers = makers_with_roots<CgPreconditioned>()},
   };
   return table;
 }

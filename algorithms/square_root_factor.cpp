@@ -2,7 +2,6 @@
 #include "algorithms/square_root_factor.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace delassus {
 namespace {
@@ -49,8 +48,8 @@ template <class T> void SquareRootFactor<T>::analyze(const Structure& s) {
   armature_ = t_inverse_ = numbers(s.dofs());
   v_ = numbers(fronts_.v);
   beta_ = numbers(fronts_.rows);
-  order_.assign(beta_.size(), 0);
-  column_ = numbers(fronts_.tallest);
+  pivot_.assign(beta_.size(), 0);
+  taken_.assign(static_cast<std::size_t>(fronts_.tallest), 0);
   lane_.assign(s_.size(), 0);
   inertia_rows_.assign(static_cast<std::size_t>(plan_.steps), 0);
   rows_ = reflections_ = inertia_rows_;
@@ -95,24 +94,29 @@ template <class T> Report SquareRootFactor<T>::eliminate(int begin, int end) {
   return {};
 }
 
-// Reduces the columns of ν_i; keeps the first n_i rows and hands on the others.
+// Reduces the columns of ν_i; keeps the pivots' rows and hands on the others. A row is zero once it is taken out.
 template <class T> int SquareRootFactor<T>::eliminate(int i) {
   const Front& f = fronts_.fronts[i];
   const int first = plan_.first_column[i];
   T least_squared[6];
-  rows_[i] = assemble(i, least_squared);
-  const Strip<T> front = strip(f, rows_[i]);
-  std::iota(front.order, front.order + rows_[i], 0);
+  const int rows = rows_[i] = assemble(i, least_squared);
+  const Strip<T> front{front_.data(), f.capacity, f.members + 1, rows};
+  std::fill_n(taken_.begin(), rows, char{0});
   int* const lane = lane_.data() + first;
-  const int reduced = triangularise(front, 0, 0, f.dofs, least_squared, reflections(f), lane);
-  if (reduced < f.dofs) return lane[reduced];
-  for (int k = 0; k < f.dofs; ++k) {
-    t_[first + k] = front.block(0)[k];
+  const int reduced = triangularise(front, 0, f.dofs, least_squared, reflections(f), 0, lane, [&](int k, int row) {
+    t_[first + k] = front.block(0)[row];
     t_inverse_[first + k] = T(1) / t_[first + k][lane[k]];
-    for (int b = 0; b < f.members; ++b) c_[f.c + b * f.dofs + k] = front.block(1 + b)[k];
-  }
+    for (int b = 0; b < f.members; ++b) c_[f.c + b * f.dofs + k] = front.block(1 + b)[row];
+    take(front, 0, row);
+  });
+  if (reduced < f.dofs) return lane[reduced];
   reflections_[i] = hand_on(f, front);
   return -1;
+}
+
+template <class T> void SquareRootFactor<T>::take(const Strip<T>& front, int b, int row) {
+  taken_[row] = 1;
+  for (; b < front.blocks; ++b) front.block(b)[row] = Six<T>::zero();
 }
 
 // The rows of front i, a_i substituted; returns their number. least_squared: see triangularise.
@@ -187,47 +191,49 @@ template <class T> void SquareRootFactor<T>::substitute(int i, int begin, int en
   }
 }
 
-// Hands rows n_i … on, member by member. Returns the number of reflections of the front.
+// Hands the remaining rows on, member by member. Returns the number of reflections of the front.
 template <class T> int SquareRootFactor<T>::hand_on(const Front& f, const Strip<T>& front) {
   const T nothing[6] = {T(0), T(0), T(0), T(0), T(0), T(0)};
   const Reflections<T> kept = reflections(f);
-  const int rows = front.rows;
   int top = f.dofs, reflected = f.dofs;
   for (int b = 1; b <= f.members; ++b) {
     const int member = f.first_member + b - 1;
-    if (rows - top <= FrontPlan::handed_limit) {
-      store_handed(f, member, top, rows - top);
-      top = rows;
-      continue;
+    const bool all = front.rows - top <= FrontPlan::handed_limit;
+    const int count = handed_count_[member] = all ? front.rows - top : 6;
+    const auto hand = [&](int k, int row) {
+      const FrontPlan::Handed& h = fronts_.handed[member];
+      for (int c = b; c < front.blocks; ++c) handed_rows_[h.first + (c - b) * h.capacity + k] = front.block(c)[row];
+      kept.pivot[top + k] = row;
+      take(front, b, row);
+    };
+    int done = 0;
+    if (!all) {
+      int lane[6];
+      const int reduced = done = triangularise(front, b, 6, nothing, kept, top, lane, hand);
+      Six<T>* const handed = handed_rows_.data() + fronts_.handed[member].first;
+      for (int k = 1; k < reduced; ++k)  // what reflections have left of columns reduced before
+        for (int j = 0; j < k; ++j) handed[k].v[lane[j]] = T(0);
     }
-    int lane[6];
-    int t = triangularise(front, b, top, 6, nothing, kept, lane);
-    for (int k = 1; k < 6; ++k)  // below the diagonal: zero but for rounding
-      for (int j = 0; j < std::min(k, t); ++j) front.block(b)[top + k].v[lane[j]] = T(0);
-    for (; t < 6; ++t) {  // nothing is left in this block
-      kept.beta[top + t] = T(0);
-      std::fill_n(kept.vector(top + t), f.stride, T(0));
-    }
-    store_handed(f, member, top, 6);
-    reflected = top += 6;
+    for (int row = 0; done < count; ++row)  // as they are, for nothing is left in this block, or few rows
+      if (taken_[row] == 0) {
+        if (!all) {
+          kept.beta[top + done] = T(0);
+          std::fill_n(kept.vector(top + done), f.stride, T(0));
+        }
+        hand(done++, row);
+      }
+    top += count;
+    if (!all) reflected = top;
   }
   return reflected;
-}
-
-template <class T> void SquareRootFactor<T>::store_handed(const Front& f, int member, int row, int count) {
-  handed_count_[member] = count;
-  const FrontPlan::Handed& h = fronts_.handed[member];
-  for (int b = 0; count > 0 && b < h.blocks; ++b)
-    std::copy_n(front_.begin() + (f.members + 1 - h.blocks + b) * f.capacity + row, count,
-                handed_rows_.begin() + h.first + b * h.capacity);
 }
 
 template <class T> Index SquareRootFactor<T>::bytes() const {
   const auto sixes = s_.size() + k_.size() + joint_k_.size() + inertia_.size() + t_.size() + c_.size() +
                      handed_rows_.size() + front_.size();
-  const auto numbers = armature_.size() + t_inverse_.size() + v_.size() + beta_.size() + column_.size();
-  const auto integers = inertia_rows_.size() + lane_.size() + rows_.size() + reflections_.size() + order_.size() +
-                        handed_count_.size();
+  const auto numbers = armature_.size() + t_inverse_.size() + v_.size() + beta_.size();
+  const auto integers = inertia_rows_.size() + lane_.size() + rows_.size() + reflections_.size() + pivot_.size() +
+                        handed_count_.size() + taken_.size() / sizeof(int);
   return static_cast<Index>(sixes * sizeof(Six<T>) + numbers * sizeof(T) + integers * sizeof(int)) + plan_.bytes() +
          fronts_.bytes() + root_.bytes();
 }

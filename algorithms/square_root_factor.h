@@ -48,13 +48,12 @@ template <class T> class SquareRootFactor {
   void assemble_handed(const Front& f, int member, int row);
   void substitute(int i, int begin, int end, T* magnitude);
   int hand_on(const Front& f, const Strip<T>& front);
-  void store_handed(const Front& f, int member, int row, int count);
-  [[nodiscard]] Reflections<T> reflections(const Front& f) { return {v_.data() + f.v, f.stride, beta_.data() + f.row}; }
-  [[nodiscard]] Reflections<const T> reflections(const Front& f) const {
-    return {v_.data() + f.v, f.stride, beta_.data() + f.row};
+  void take(const Strip<T>& front, int b, int row);  // row `row` out of the blocks from b on
+  [[nodiscard]] Reflections<T> reflections(const Front& f) {
+    return {v_.data() + f.v, f.stride, beta_.data() + f.row, pivot_.data() + f.row};
   }
-  [[nodiscard]] Strip<T> strip(const Front& f, int rows) {
-    return {front_.data(), f.capacity, f.members + 1, rows, order_.data() + f.row, column_.data()};
+  [[nodiscard]] Reflections<const T> reflections(const Front& f) const {
+    return {v_.data() + f.v, f.stride, beta_.data() + f.row, pivot_.data() + f.row};
   }
   void fit(int i, const T* right, T* x) const;
   void push_force(int i, const T* r1, Six<T>* force, T* w) const;
@@ -77,11 +76,11 @@ template <class T> class SquareRootFactor {
   std::vector<int> lane_;                // which degree of freedom of the joint is column k of T_i
   std::vector<int> rows_, reflections_;  // per step
   std::vector<T> v_, beta_;
-  std::vector<int> order_;               // per front: where the row that is now r-th stood at assembly
+  std::vector<int> pivot_;               // per front: its rows in the order in which they stay or are handed on
   std::vector<Six<T>> handed_rows_;
   std::vector<int> handed_count_;        // per member of the plan
   std::vector<Six<T>> front_;            // scratch: the front being eliminated
-  std::vector<T> column_;                // scratch: one column of it
+  std::vector<char> taken_;              // scratch: which of its rows are done
 };
 
 }  // namespace delassus

@@ -20,7 +20,7 @@ template <class T> void SquareRootFactor<T>::fit(int i, const T* right, T* x) co
     if (h.source < plan_.first_active) next = std::fill_n(next, count, T(0));  // no row, no residual
     else {
       const Index source = fronts_.fronts[h.source].row;
-      for (int r = 0; r < count; ++r) *next++ = x[source + order_[source + h.row + r]];
+      for (int r = 0; r < count; ++r) *next++ = x[source + pivot_[source + h.row + r]];
     }
   }
   std::fill(next, xi + f.stride, T(0));
@@ -42,7 +42,7 @@ template <class T> void SquareRootFactor<T>::unfit(int i, T* x, T* residual) con
     const int count = handed_count_[fronts_.given[g]];
     const Index source = fronts_.fronts[h.source].row;
     if (h.source >= plan_.first_active)
-      for (int r = 0; r < count; ++r) x[source + order_[source + h.row + r]] = next[r];
+      for (int r = 0; r < count; ++r) x[source + pivot_[source + h.row + r]] = next[r];
     next += count;
   }
 }
@@ -100,7 +100,7 @@ void SquareRootFactor<T>::solve_kkt(const T* r1, const T* r2, T* dnu, T* dlambda
     if (i < plan_.first_active) continue;
     fit(i, right, x);
     for (int k = 0; k < n; ++k) {  // y = w + c₁; −w takes the place of c₁
-      T& c1 = x[fronts_.fronts[i].row + order_[fronts_.fronts[i].row + k]];
+      T& c1 = x[fronts_.fronts[i].row + pivot_[fronts_.fronts[i].row + k]];
       const T w = yi[k];
       yi[k] += c1;
       c1 = -w;

@@ -126,8 +126,46 @@ template <class T> T Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* 
   return energy;
 }
 
+// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ), from the roots outwards
+template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const {
+  const auto quadratic = [](const SixBySix<T>& X, const Six<T>& x) { return dot(x, multiply(X, x)); };
+  for (int i = plan_->steps; i-- > 0;) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first, p = plan_->parent[i];
+    const Six<T>* const w = w_.data() + plan_->first_w[i];
+    omega[i] = p < 0 ? SixBySix<T>::zero() : omega[p];
+    Matrix6<T> V = Matrix6<T>::Zero();  // of ν_i, in the basis of D
+    for (int c = 0; c < n; ++c) {
+      V(c, c) = d_inverse_[first + c];
+      if (p < 0) continue;
+      const Six<T> pushed = multiply(omega[p], w[c]);
+      subtract_outer(omega[i], s_[first + c], pushed);
+      subtract_outer(omega[i], pushed, s_[first + c]);
+      for (int e = 0; e < n; ++e) V(e, c) += dot(w[e], pushed);
+    }
+    for (int c = 0; c < n; ++c)
+      for (int e = 0; e < n; ++e) {
+        Six<T> scaled = s_[first + c];
+        scale(scaled, V(e, c));
+        add_outer(omega[i], s_[first + e], scaled);
+      }
+    for (int j = first_joint_rows_[i]; j < first_joint_rows_[i + 1]; ++j)
+      for (Index r = 0; r < joint_rows_[j].rows; ++r) {
+        const T* const k = joint_k_.data() + joint_rows_[j].first + r * n;
+        T& of_row = d[joint_rows_[j].row + r] = T(0);
+        for (int c = 0; c < n; ++c)
+          for (int e = 0; e < n; ++e) of_row += k[c] * V(c, e) * k[e];
+      }
+  }
+  for (const auto& e : structure_->link_constraints)
+    for (Index r = 0; r < e.rows; ++r) {
+      d[e.row + r] = T(0);
+      for (const auto& link : e.links)
+        d[e.row + r] += T(static_cast<int>(e.links.size())) * quadratic(omega[plan_->step[link.body]], k_[link.first + r]);
+    }
+}
+
 #define DELASSUS_INSTANTIATE(T) template T Factor<T>::solve(const T*, const T*, T*, T*, T*) const; \
-  template void Factor<T>::project<T>(const T*, T*, T*) const;
+  template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 DELASSUS_INSTANTIATE(Stochastic)
 template void Factor<Stochastic>::scatter(const Stochastic*, Six<Stochastic>*, Stochastic*) const;

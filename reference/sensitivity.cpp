@@ -185,12 +185,11 @@ VectorX<double> Sensitivity::solve_normwise(const VectorX<double>& a, const Vect
 }
 
 VectorX<double> Sensitivity::solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const {
-  Vector bound = solve_sensitivity(a, lambda);
-  const VectorX<Quad> diagonal = data_->direct_formula().R.diagonal();
+  const Vector bound = solve_sensitivity(a, lambda), least = Vector::Constant(rows(), norm(lambda));
+  if (!PivotedLdlt<Quad>(data_->dense.R_inverse).regular()) return bound + least;
   const double energy = std::sqrt(std::fabs(a.dot(lambda)));  // ‖ν‖²_M + ‖λ‖²_{R⁻¹}
-  for (Index r = 0; r < rows(); ++r)
-    bound[r] += std::min(norm(lambda), std::sqrt(std::fabs(static_cast<double>(diagonal[r]))) * energy);
-  return bound;
+  const Vector root = magnitudes(MatrixX<Quad>(data_->direct_formula().R.diagonal())).cwiseSqrt();
+  return bound + least.cwiseMin(root * energy);
 }
 
 VectorX<double> Sensitivity::solve_amplified(const VectorX<double>& a) const {

@@ -1,0 +1,86 @@
+#include "algorithms/capped_inverse.h"
+
+#include <cmath>
+
+#include "algorithms/columns.h"
+
+namespace delassus {
+
+template <class T, class F> void CappedInverse<T, F>::analyze(const Structure& structure) {
+  structure_ = std::make_shared<const Structure>(structure);
+  plan_ = make_plan(*structure_, Matrix::M_R, Branches::all);
+  factor_.analyze(*structure_, plan_);
+  narrow_ = Problem<F>(structure_);
+  weights_.analyze(*structure_);
+  narrow_weights_.analyze(*structure_);
+  shift_.assign(static_cast<std::size_t>(structure_->rows), T(0));
+  omega_.assign(static_cast<std::size_t>(structure_->bodies()), SixBySix<T>::zero());
+}
+
+template <class T, class F> Report CappedInverse<T, F>::update(const Problem<T>& problem, const Factor<T>& M) {
+  const auto round = [](const auto& from, auto& to) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+      for (Index k = 0; k < from[i].size(); ++k) to[i].data()[k] = static_cast<F>(from[i].data()[k]);
+  };
+  round(problem.S, narrow_.S);
+  round(problem.H, narrow_.H);
+  round(problem.K, narrow_.K);
+  std::copy(problem.armature.begin(), problem.armature.end(), narrow_.armature.begin());
+  std::copy(problem.joint_K.begin(), problem.joint_K.end(), narrow_.joint_K.begin());
+  M.row_mobility(shift_.data(), omega_.data());
+  for (T& d : shift_) d *= T(1 / g_);
+  return undamped_ = factor_.start(narrow_);
+}
+
+template <class T, class F> Report CappedInverse<T, F>::update_damping(const Damping<T>& damping) {
+  if (!undamped_.ok()) return undamped_;
+  const Report inverted = weights_.assign_inverse(damping, shift_.data());
+  if (!inverted.ok()) return inverted;
+  narrow_weights_.round(weights_);
+  return factor_.update_weights(narrow_weights_);
+}
+
+// In F, on residuals scaled to about 1: a residual of 1e-50 must not vanish in float.
+template <class T, class F>
+void CappedInverse<T, F>::solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
+  using std::abs;
+  const Index n = structure_->dofs(), m = structure_->rows;
+  F* const tau = reinterpret_cast<F*>(work);
+  F* const nu = tau + padded(n);
+  F* const right = nu + padded(n);
+  F* const rate = right + padded(m);
+  F* const force = rate + padded(m);
+  F* const inner = force + padded(m);
+  T size(0);
+  for (Index c = 0; c < n && r1 != nullptr; ++c) size = std::max(size, T(abs(r1[c])));
+  for (Index r = 0; r < m; ++r) size = std::max(size, T(abs(r2[r])));
+  const T scale = size > T(0) ? size : T(1);
+  for (Index c = 0; c < n; ++c) tau[c] = r1 != nullptr ? static_cast<F>(T(r1[c] / scale)) : F(0);
+  for (Index r = 0; r < m; ++r) right[r] = static_cast<F>(T(r2[r] / scale));
+  narrow_weights_.multiply(right, force);
+  factor_.solve(force, tau, rate, nu, inner);
+  for (Index r = 0; r < m; ++r) rate[r] = right[r] - rate[r];
+  narrow_weights_.multiply(rate, force);
+  for (Index c = 0; c < n && d_nu != nullptr; ++c) d_nu[c] = T(nu[c]) * scale;
+  for (Index r = 0; r < m; ++r) d_lambda[r] = T(force[r]) * scale;
+}
+
+template <class T, class F> Index CappedInverse<T, F>::workspace() const {
+  static_assert(sizeof(F) <= sizeof(T));
+  return 2 * padded(structure_->dofs()) + 3 * padded(structure_->rows) + factor_.workspace();
+}
+
+template <class T, class F> Index CappedInverse<T, F>::bytes() const {
+  return plan_.bytes() + factor_.bytes() + weights_.bytes() + narrow_weights_.bytes() +
+         static_cast<Index>(narrow_.S.size() * sizeof(Vector6<F>) + narrow_.H.size() * sizeof(Matrix6<F>) +
+                            narrow_.K.size() * sizeof(Vector6<F>) + shift_.size() * sizeof(T) +
+                            omega_.size() * sizeof(SixBySix<T>));
+}
+
+template class CappedInverse<double, double>;
+template class CappedInverse<double, float>;
+template class CappedInverse<float, float>;
+template class CappedInverse<Quad, Quad>;
+template class CappedInverse<Counted, Counted>;
+
+}  // namespace delassus

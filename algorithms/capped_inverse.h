@@ -1,0 +1,44 @@
+// The damped inverse at a damping that the scalar F can carry, as approximate solve of the KKT system: what proximal
+// iterations, refinement from float and preconditioning are made of.
+//
+// What     (K)  M δν − Jᵀδλ = r₁,  J δν + R⁻¹δλ = r₂   with R⁻¹ replaced by   R₀⁻¹ = R⁻¹ + diag(d)/g,
+//          d_r ≥ (J M⁻¹Jᵀ)_rr, so that R₀ (J M⁻¹Jᵀ)_rr ≤ g whatever R is, hard rows included.
+// Formula  M_R₀ δν = r₁ + JᵀR₀ r₂,  δλ = R₀ (r₂ − J δν).
+// As iteration  λ ← λ + δλ on the residual of (K) contracts the error along an eigenvector of J M⁻¹Jᵀ (scaled by d) of
+//          eigenvalue μ by at most 1 / (1 + g μ): the proximal method of multipliers.
+// Singular M is (lost_pivot), or a row touches nothing and is hard (zero_damping).
+// Cost     update: the factor of M_R in F + 300 N; solve: that of lcaba in F.
+// Source   R. T. Rockafellar 1976 for the proximal point algorithm; paper, Algorithm 4, for the inverse.
+#pragma once
+
+#include "algorithms/factor.h"
+
+namespace delassus {
+
+template <class T, class F> class CappedInverse {
+ public:
+  explicit CappedInverse(double g) : g_(g) {}
+  void analyze(const Structure& structure);
+  /// `M` is the factor of M at the same configuration, every joint active.
+  [[nodiscard]] Report update(const Problem<T>& problem, const Factor<T>& M);
+  [[nodiscard]] Report update_damping(const Damping<T>& damping);
+  /// Shapes n, m, n, m; `work` needs workspace() scalars T. r1 may be nullptr (zero) and d_nu nullptr (not wanted).
+  void solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
+
+  [[nodiscard]] Index workspace() const;
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  double g_;
+  std::shared_ptr<const Structure> structure_;  // of narrow_
+  Plan plan_;
+  Factor<F> factor_;
+  Problem<F> narrow_;             // the problem rounded to F
+  BlockDiagonal<T> weights_;      // R₀
+  BlockDiagonal<F> narrow_weights_;
+  std::vector<T> shift_;          // d / g
+  std::vector<SixBySix<T>> omega_;
+  Report undamped_;
+};
+
+}  // namespace delassus

@@ -1,0 +1,149 @@
+#include "algorithms/kkt_elimination.h"
+
+#include <algorithm>
+
+#include "algorithms/ldlt_pivoted.h"
+
+namespace delassus {
+
+template <class T, Dependent policy> void KktEliminationWith<T, policy>::do_analyze() {
+  const Index m = this->structure()->rows;
+  refinement_.analyze(this->structure());
+  damping_.analyze(*this->structure());
+  A0_.setZero(m, m);
+  A_.setZero(m, m);
+  factor_.setZero(m, m);
+  unit_.assign(static_cast<std::size_t>(m), T(0));
+  column_ = unit_;
+  hard_.assign(unit_.size(), 0);
+  order_.assign(static_cast<std::size_t>(m), 0);
+  dependent_.clear();
+  dependent_.reserve(static_cast<std::size_t>(m));
+  sweep_work_ = std::make_unique<Workspace<T>>(refinement_.factor_M().workspace());
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  undamped_ = refinement_.update(problem);
+  if (undamped_.ok())
+    for (Index c = 0; c < A0_.cols(); ++c) {  // J M⁻¹Jᵀ e_c
+      unit_[c] = T(1);
+      refinement_.factor_M().project(unit_.data(), A0_.data() + c * A0_.rows(), sweep_work_->data());
+      unit_[c] = T(0);
+    }
+  return do_update_damping(damping);
+}
+
+// A = J M⁻¹Jᵀ + R⁻¹ = P ᵀL D Lᵀ P, as far as its rank goes
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& damping) {
+  if (!undamped_.ok()) return undamped_;
+  refinement_.update_damping(damping);
+  damping_.assign(damping);
+  const Index m = this->size();
+  A_ = A0_;
+  for (Index c = 0; c < m; ++c) {  // + R⁻¹ e_c
+    unit_[c] = T(1);
+    damping_.multiply(unit_.data(), column_.data());
+    unit_[c] = T(0);
+    for (Index r = 0; r < m; ++r) A_(r, c) += column_[r];
+    hard_[c] = column_[c] == T(0);
+  }
+  for (Index c = 0; c < m; ++c) column_[c] = A_(c, c);
+  factor_ = A_;
+  rank_ = ldlt_pivoted(factor_.data(), m, order_.data(), [&](Index row, T& pivot, Index steps) {
+    const T least = damping_.diagonal(row);  // 0 for rows of a dense block
+    if (least > pivot) pivot = least;
+    if (least > T(0)) return true;
+    const T noise = T(30 * unit_roundoff<T> * static_cast<double>(steps)) * column_[row];
+    return ScalarTraits<T>::usable_pivot(pivot) && pivot > noise;
+  });
+  dependent_.assign(order_.begin() + rank_, order_.end());
+  std::sort(dependent_.begin(), dependent_.end());
+  factored_ = {};
+  for (const Index r : dependent_)  // a damped row never depends: this arithmetic cannot tell
+    if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {Status::lost_pivot, r};
+  return {};  // apply is defined all the same; solve reports the lost pivot
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_apply(ConstRef<T> f, Ref<T> a, T*) const {
+  if (!undamped_.ok()) return undamped_;
+  for (Index c = 0; c < f.cols(); ++c) {
+    a.col(c).setZero();
+    for (Index k = 0; k < f.rows(); ++k) a.col(c) += A_.col(k) * f(k, c);
+  }
+  return {};
+}
+
+// λ of the independent rows; 0 for the others
+template <class T, Dependent policy>
+void KktEliminationWith<T, policy>::solve_multipliers(const T* right, T* lambda, T* work) const {
+  const Index m = this->size();
+  for (Index k = 0; k < rank_; ++k) work[k] = right[order_[k]];
+  ldlt_solve(factor_.data(), rank_, m, work);
+  for (Index r = 0; r < m; ++r) lambda[r] = T(0);
+  for (Index k = 0; k < rank_; ++k) lambda[order_[k]] = work[k];
+}
+
+// A δλ = r₂ − J M⁻¹ r₁;  δν = M⁻¹(r₁ + Jᵀδλ)
+template <class T, Dependent policy>
+void KktEliminationWith<T, policy>::correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
+  const Index m = this->size();
+  T* const right = work + refinement_.factor_M().workspace();
+  T* const rate = right + padded(m);
+  for (Index r = 0; r < m; ++r) right[r] = T(0);
+  refinement_.factor_M().solve(right, r1, rate, d_nu, work);
+  for (Index r = 0; r < m; ++r) right[r] = r2[r] - rate[r];
+  solve_multipliers(right, d_lambda, rate);
+  refinement_.factor_M().solve(d_lambda, r1, rate, d_nu, work);
+}
+
+// The rows left out must hold by themselves.
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f) const {
+  using std::abs;
+  const Index m = this->size();
+  for (const Index r : dependent_) {
+    T residual = a[r], size = T(abs(a[r]));
+    for (Index k = 0; k < m; ++k) {
+      residual -= A_(r, k) * f[k];
+      size += T(abs(A_(r, k))) * T(abs(f[k]));
+    }
+    if (T(abs(residual)) > T(30 * unit_roundoff<T> * static_cast<double>(m)) * size) return {Status::inconsistent, r};
+  }
+  return {};
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
+  if (!undamped_.ok()) return undamped_;
+  if (!factored_.ok()) return factored_;
+  Report worst;
+  for (Index c = 0; c < a.cols(); ++c) {
+    const T* const right = a.data() + c * a.outerStride();
+    T* const force = f.data() + c * f.outerStride();
+    Report report = refinement_.solve(right, force, Accuracy::full(), max_steps, [this](auto... args) { correct(args...); }, workspace);
+    const Report consistent = check_dependent(right, force);
+    if (!consistent.ok()) report = consistent;
+    worst = worse(worst, report);
+  }
+  return worst;
+}
+
+template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_workspace(Index) const {
+  return refinement_.workspace(refinement_.factor_M().workspace() + 2 * padded(this->size()));
+}
+
+template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_bytes() const {
+  return refinement_.bytes() + damping_.bytes() +
+         static_cast<Index>(sizeof(T)) * (3 * A_.size() + static_cast<Index>(2 * unit_.size()) + sweep_work_->size()) +
+         static_cast<Index>(sizeof(Index) * 2 * order_.size());
+}
+
+#define DELASSUS_INSTANTIATE(T)                              \
+  template class KktEliminationWith<T, Dependent::left_out>; \
+  template class KktEliminationWith<T, Dependent::refused>;
+DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
+
+}  // namespace delassus

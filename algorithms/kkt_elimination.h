@@ -1,0 +1,58 @@
+// kkt_elimination, dense_refined: the multipliers kept to the end, damping zero allowed.
+//
+// What     f = A⁻¹ a, A = J M⁻¹Jᵀ + R⁻¹ formed by articulated-body sweeps and factored with diagonal pivoting.
+// Formula  elimination of ν from  M ν − Jᵀλ = r₁,  J ν + R⁻¹λ = r₂:   A λ = r₂ − J M⁻¹ r₁,   ν = M⁻¹(r₁ + Jᵀλ);
+//          then refinement.h.
+// Rank     pivots are those of the multipliers' block. That of a row with scalar damping is at least R⁻¹_rr, whatever
+//          rounding left of it.
+//          A hard row whose pivot is not above 30 eps · steps · A_rr depends on the rows before it.
+//            kkt_elimination   leaves such rows out (λ_r = 0) and names them in dependent_rows(); a that is not in the range
+//                              of A is `inconsistent`: the residual of a row left out exceeds 30 eps · m (|a_r| + |A_r·||λ|).
+//            dense_refined     reports lost_pivot.
+// Cost     update: m sweeps of the factor of M, m³/3; solve: per step 2 m² + 4 sweeps + a residual.
+// Workspace  refinement's + 2 m.
+// Error    refined.
+// Source   paper, section II; refinement.h.
+#pragma once
+
+#include "algorithms/delassus.h"
+#include "algorithms/refinement.h"
+
+namespace delassus {
+
+enum class Dependent : std::uint8_t { left_out, refused };
+
+template <class T, Dependent policy> class KktEliminationWith : public Operator<T> {
+ public:
+  static constexpr int max_steps = 5;
+  [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
+
+ protected:
+  void do_analyze() override;
+  Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_damping(const Damping<T>& damping) override;
+  Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  [[nodiscard]] Index do_workspace(Index columns) const override;
+  [[nodiscard]] Index do_bytes() const override;
+
+ private:
+  void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
+  void solve_multipliers(const T* right, T* lambda, T* work) const;
+  [[nodiscard]] Report check_dependent(const T* a, const T* f) const;
+
+  Refinement<T> refinement_;
+  BlockDiagonal<T> damping_;      // R⁻¹
+  MatrixX<T> A0_, A_, factor_;    // m × m
+  std::vector<T> unit_, column_;
+  std::vector<char> hard_;        // per row: R⁻¹_rr = 0
+  std::vector<Index> order_, dependent_;
+  Index rank_ = 0;
+  std::unique_ptr<Workspace<T>> sweep_work_;  // of the sweeps that form A
+  Report undamped_, factored_;
+};
+
+template <class T> using KktElimination = KktEliminationWith<T, Dependent::left_out>;
+template <class T> using DenseRefined = KktEliminationWith<T, Dependent::refused>;
+
+}  // namespace delassus

@@ -1,0 +1,42 @@
+#include "algorithms/proximal.h"
+
+namespace delassus {
+
+template <class T, class F> void ProximalWith<T, F>::do_analyze() {
+  refinement_.analyze(this->structure());
+  inverse_.analyze(*this->structure());
+}
+
+template <class T, class F> Report ProximalWith<T, F>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  undamped_ = refinement_.update(problem);
+  if (undamped_.ok()) undamped_ = inverse_.update(problem, refinement_.factor_M());
+  return do_update_damping(damping);
+}
+
+template <class T, class F> Report ProximalWith<T, F>::do_update_damping(const Damping<T>& damping) {
+  refinement_.update_damping(damping);
+  return factored_ = undamped_.ok() ? inverse_.update_damping(damping) : undamped_;
+}
+
+template <class T, class F> Report ProximalWith<T, F>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
+  if (!factored_.ok()) return factored_;
+  Report worst;
+  for (Index c = 0; c < a.cols(); ++c)
+    worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), Accuracy::full(),
+                                           max_steps, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace));
+  return worst;
+}
+
+template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index) const {
+  return refinement_.workspace(inverse_.workspace());
+}
+
+template <class T, class F> Index ProximalWith<T, F>::do_bytes() const { return refinement_.bytes() + inverse_.bytes(); }
+
+template class ProximalWith<double, double>;
+template class ProximalWith<double, float>;
+template class ProximalWith<float, float>;
+template class ProximalWith<Quad, Quad>;
+template class ProximalWith<Counted, Counted>;
+
+}  // namespace delassus
