@@ -1,6 +1,7 @@
 #include "algorithms/kkt_residual.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace delassus {
 
@@ -27,7 +28,8 @@ template <class T>
 void KktResidual<T>::evaluate(const W* nu, const W* lambda, const T* a, T* r1, T* r2, T* work) const {
   const Structure& s = *structure_;
   const Index bodies = s.bodies();
-  Six<W>* const acceleration = reinterpret_cast<Six<W>*>(work);
+  const auto past = reinterpret_cast<std::uintptr_t>(work) % alignof(Six<W>);  // Wide<float> asks for more than float
+  Six<W>* const acceleration = reinterpret_cast<Six<W>*>(past == 0 ? work : work + (alignof(Six<W>) - past) / sizeof(T));
   Six<W>* const force = acceleration + bodies;
   W* const damped = reinterpret_cast<W*>(force + bodies);
   W* const torque = damped + s.rows;
@@ -74,7 +76,7 @@ void KktResidual<T>::evaluate(const W* nu, const W* lambda, const T* a, T* r1, T
 
 template <class T> Index KktResidual<T>::workspace() const {
   const std::size_t bytes = 2 * h_.size() * sizeof(Six<W>) + (static_cast<std::size_t>(structure_->rows) + s_.size()) * sizeof(W);
-  return static_cast<Index>(bytes / sizeof(T)) + 8;
+  return static_cast<Index>((bytes + alignof(Six<W>)) / sizeof(T)) + 8;
 }
 
 template <class T> Index KktResidual<T>::bytes() const {
