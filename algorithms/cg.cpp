@@ -90,14 +90,15 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
       if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
       const T quotient = pq / inner(p, p);
       if (quotient > largest) largest = quotient;
-      const T alpha = rz / pq;                                  // α = rᵀz / pᵀAp
+      // α = rᵀz / pᵀAp; with P in float, pᵀr: the energy cannot grow, even when p is little more than rounding
+      const T alpha = (plain ? rz : T(inner(p, r))) / pq;
       x += p * alpha;
       r -= q * alpha;
       rr = inner(r, r);
       precondition(r.data(), z, inner_work);                    // z = P r
       const T next = inner(r, Map<T>(z, m));
-      // β = rᵀz / (rᵀz before); with P in float, zᵀ(r − r before): P need not be the same from step to step
-      const T beta = plain ? T(next / rz) : T(-alpha * inner(q, Map<T>(z, m)) / rz);
+      // β = rᵀz / (rᵀz before); with P in float, −zᵀA p / pᵀAp: P need not be the same from step to step
+      const T beta = plain ? T(next / rz) : T(-inner(q, Map<T>(z, m)) / pq);
       p = Map<T>(z, m) + p * beta;
       rz = next;
       ++report.iterations;
