@@ -2,6 +2,7 @@
 
 #include "generators/build.h"
 #include "property_tests/laws_conduct.h"
+#include "property_tests/laws_groups.h"
 #include "property_tests/laws_routes.h"
 #include "property_tests/route.h"
 
@@ -9,8 +10,6 @@ namespace delassus::laws {
 namespace {
 
 constexpr Function apply = Function::apply, solve = Function::solve;
-constexpr const char* of_apply = "apply_sensitivity";
-constexpr const char* of_solve = "by error class (docs/verification.md)";
 using X = Rational;
 
 constexpr auto can_apply = why_not_function<double, apply>;
@@ -35,10 +34,8 @@ const char* excuse(const Broken& broken, const Case& c) {
   return ill_conditioned(c) ? "not_converged, and says so, where κ(A) > 2²⁶ or A f itself is not that accurate" : nullptr;
 }
 
-}  // namespace
-
-const std::vector<LawRow>& laws() {
-  static const std::vector<LawRow> table{
+std::vector<LawRow> first_laws() {
+  return {
       {"apply symmetric", "xᵀ(A y) = (A x)ᵀ y", of_apply, can_apply, symmetric<double, apply>},
       {"solve symmetric", "xᵀ(A⁻¹ y) = (A⁻¹ x)ᵀ y", of_solve, can_solve, symmetric<double, solve>},
       {"apply positive", "0 ≤ xᵀ A x", of_apply, can_apply, positive<double, apply>},
@@ -99,6 +96,17 @@ const std::vector<LawRow>& laws() {
       {"exact armature = joint row", "armature A_i = rows 1 on joint i with R = A_i, a = 0", "equality",
        why_not_armature<X>, armature<X>},
   };
+}
+
+}  // namespace
+
+const std::vector<LawRow>& laws() {
+  static const std::vector<LawRow> table = [] {
+    std::vector<LawRow> all;
+    for (const auto group : {first_laws, order_laws, row_laws, mechanism_laws, scalar_laws})
+      for (const LawRow& row : group()) all.push_back(row);
+    return all;
+  }();
   return table;
 }
 

@@ -237,5 +237,6 @@ template <class T> Damping<T> first_constraint_hard(const Structure& s, const Da
   template Damping<T> first_constraint_hard(const Structure&, const Damping<T>&);
 DELASSUS_VARIANTS(double)
 DELASSUS_VARIANTS(Rational)
+DELASSUS_VARIANTS(PrimeField)
 
 }  // namespace delassus::laws

@@ -1,5 +1,5 @@
 // Other problems with the same answer, or one that follows from it: the second route of a law.
-// Templates are instantiated for double (coefficients formed in Quad and rounded once) and Rational.
+// Templates are instantiated for double (coefficients formed in Quad and rounded once), Rational and PrimeField.
 #pragma once
 
 #include "algorithms/problem.h"

@@ -1,0 +1,28 @@
+// Variants of a problem that change its rows or its units only. Instantiated for double and Rational.
+#pragma once
+
+#include "property_tests/parts.h"
+
+namespace delassus::laws {
+
+/// The number of constraints of both kinds.
+[[nodiscard]] Index constraint_count(const Structure& s);
+
+/// One constraint, chosen by `seed`, left out. Needs two.
+template <class T> [[nodiscard]] Second<T> one_left_out(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
+/// The constraints in a random order.
+template <class T> [[nodiscard]] Second<T> reordered(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
+/// Every link constraint has one body more, with K = 0. A is the same.
+template <class T> [[nodiscard]] Second<T> with_idle_links(const Problem<T>& p, const Damping<T>& d);
+/// One constraint, chosen by `seed`, twice: R⁻¹ times 3 on the first, times 3/2 on the copy, which comes last and has
+/// the same `from`. Their R are a third and two thirds of the given one.
+template <class T> [[nodiscard]] Second<T> doubled(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
+
+/// Lengths times `length`, masses times `mass`, rows times `row`; A' = row²/mass A. Powers of two in double.
+template <class T> struct Units {
+  T length, mass, row;
+};
+template <class T> [[nodiscard]] Units<T> other_units();
+template <class T> [[nodiscard]] Second<T> in_units(const Problem<T>& p, const Damping<T>& d, const Units<T>& u);
+
+}  // namespace delassus::laws
