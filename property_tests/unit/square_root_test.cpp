@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "algorithms/delassus.h"
 #include "algorithms/square_root_factor.h"
 #include "generators/build.h"
 #include "generators/families.h"
