@@ -55,6 +55,14 @@ void Draft::damp(DampingKind kind, int low, int high) {
   for (JointConstraintSpec& c : spec.joints) c.damping = {kind, low, high, random.next()};
 }
 
+Index limb(Draft& d, Index parent, Index n) {
+  for (Index k = 0; k < n; ++k) {
+    d.body(parent);
+    parent = d.last();
+  }
+  return parent;
+}
+
 Spec random_spec(Index bodies, std::uint64_t seed) {
   Draft d("random", seed);
   Random& r = d.random;

@@ -31,6 +31,9 @@ class Draft {
   Random random;
 };
 
+/// Appends `n` revolute bodies in a chain below `parent`; returns the last.
+Index limb(Draft& d, Index parent, Index n);
+
 /// A spec with every feature at random: joints, loops, several trees, dampings, armature. For searches.
 [[nodiscard]] Spec random_spec(Index bodies, std::uint64_t seed);
 

@@ -5,6 +5,7 @@
 
 #include "algorithms/status.h"
 #include "generators/draft.h"
+#include "generators/families_hard.h"
 
 namespace delassus::generators {
 namespace {
@@ -12,15 +13,6 @@ namespace {
 using enum JointKind;
 using C = ConstraintKind;
 using D = DampingKind;
-
-/// `n` revolute bodies below `parent`; returns the last.
-Index limb(Draft& d, Index parent, Index n) {
-  for (Index k = 0; k < n; ++k) {
-    d.body(parent);
-    parent = d.last();
-  }
-  return parent;
-}
 
 Spec chain(Index n, std::uint64_t seed) {
   Draft d("chain", seed);
@@ -279,10 +271,8 @@ Spec no_rows(Index n, std::uint64_t seed) {
 
 Spec no_bodies(Index, std::uint64_t seed) { return Draft("no_bodies", seed).spec; }
 
-}  // namespace
-
-const std::vector<FamilyRow>& families() {
-  static const std::vector<FamilyRow> table{
+std::vector<FamilyRow> common_families() {
+  return {
       {"chain", "fixed base, revolute joints, its tip held", chain, {1, 2, 3, 8, 30}, 3},
       {"swimmer", "free base, revolute joints, both ends held", swimmer, {1, 2, 8, 24}, 2},
       {"star", "free hub, a contact at every arm", star, {2, 4, 12}, 3},
@@ -308,6 +298,17 @@ const std::vector<FamilyRow>& families() {
       {"no_rows", "no constraint", no_rows, {1, 4}, 2},
       {"no_bodies", "nothing", no_bodies, {0}, 0},
   };
+}
+
+std::vector<FamilyRow> joined(std::vector<FamilyRow> first, const std::vector<FamilyRow>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+}  // namespace
+
+const std::vector<FamilyRow>& families() {
+  static const std::vector<FamilyRow> table = joined(common_families(), hard_families());
   return table;
 }
 
