@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "property_tests/defects.h"
+
 namespace delassus::cli {
 
 Scene open(const std::string& name, const std::optional<double>& damping) {
@@ -66,9 +68,10 @@ VectorX<double> read_vector(const std::string& file, Index size, const std::stri
   return x;
 }
 
-std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names) {
+std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names, const std::string& defect) {
   std::vector<const OperatorRow*> rows;
-  if (names.empty())
+  if (!defect.empty()) rows.push_back(&laws::find_defect(defect).op);
+  else if (names.empty())
     for (const OperatorRow& row : operators()) rows.push_back(&row);
   for (const std::string& name : names) rows.push_back(&find_operator(name));
   return rows;

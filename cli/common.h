@@ -30,7 +30,9 @@ using nlohmann::json;
 /// A JSON array of `size` finite numbers. @throws ModelError for a missing file, another length or anything else.
 [[nodiscard]] VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning);
 
-/// The named rows, or all when `names` is empty. @throws ModelError listing the accepted names.
-[[nodiscard]] std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names);
+/// The named rows and the named defect, or all operators when neither is given. @throws ModelError listing the accepted
+/// names.
+[[nodiscard]] std::vector<const OperatorRow*> chosen_operators(const std::vector<std::string>& names,
+                                                              const std::string& defect = {});
 
 }  // namespace delassus::cli

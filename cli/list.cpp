@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "generators/families.h"
-#include "property_tests/laws.h"
+#include "property_tests/defects.h"
 #include "reference/reference.h"
 
 namespace delassus::cli {
@@ -58,6 +58,13 @@ json scene_row(const std::string& name) {
   }
 }
 
+json defects_json() {
+  json out = json::array();
+  for (const laws::DefectRow& d : laws::defects())
+    out.push_back({{"name", d.name}, {"summary", d.what}, {"base", d.right() ? "itself" : d.base}});
+  return out;
+}
+
 json scenes_json() {
   json out = json::array();
   for (const std::string& s : scene_names()) out.push_back(scene_row(s));
@@ -70,7 +77,7 @@ struct Table {
   json (*rows)();
 };
 constexpr Table tables[] = {{"operators", operators_json}, {"references", references_json}, {"families", families_json},
-                            {"laws", laws_json},           {"scenes", scenes_json}};
+                            {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json}};
 
 void print_table(const json& rows) {
   std::size_t width = 0;
@@ -94,7 +101,7 @@ void print_markdown(const std::string& table, const json& rows) {
     }
     return;
   }
-  const char* last = table == "laws" ? "bound" : table == "references" ? "trusted" : nullptr;
+  const char* last = table == "laws" ? "bound" : table == "defects" ? "base" : table == "references" ? "trusted" : nullptr;
   std::printf("| %s | %s |%s\n|---|---|%s\n", table.c_str(), table == "laws" ? "identity" : "what it is",
               last ? (std::string(" ") + last + " |").c_str() : "", last ? "---|" : "");
   for (const json& r : rows)
@@ -125,7 +132,7 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
 }  // namespace
 
 void add_list(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes");
+  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects");
   auto table = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
   std::set<std::string> names;

@@ -12,7 +12,7 @@ namespace delassus::cli {
 namespace {
 
 struct Options {
-  std::string file, law;
+  std::string file, law, defect;
   std::vector<std::string> ops;
   bool all = false, as_json = false;
 };
@@ -49,12 +49,12 @@ int replay(const Options& o) {
   const Asked asked = read(o.file);
   const std::string law = o.all ? std::string() : o.law.empty() ? asked.law : o.law;
   std::vector<std::string> ops = o.ops;
-  if (ops.empty() && !o.all && !asked.op.empty()) ops.push_back(asked.op);
+  if (ops.empty() && !o.all && !asked.op.empty() && o.defect.empty()) ops.push_back(asked.op);
   if (!law.empty()) static_cast<void>(laws::find_law(law));  // throws, listing the names
   const laws::Case c = laws::make_case(asked.spec);
   int failed = 0, checked = 0;
   json out = json::array();
-  for (const OperatorRow* op : chosen_operators(ops))
+  for (const OperatorRow* op : chosen_operators(ops, o.defect))
     for (const laws::LawRow& row : laws::laws()) {
       if (!law.empty() && row.name != law) continue;
       const laws::Outcome x = laws::check(row, *op, c);
@@ -76,6 +76,7 @@ void add_replay(CLI::App& app, Run& run) {
   c->add_option("FILE", o->file, "a failure written by `stress`, or a spec as JSON")->required();
   c->add_option("--law", o->law, "this law instead of the one that failed");
   c->add_option("--op", o->ops, "these operators instead of the one that failed");
+  c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`)");
   c->add_flag("--all", o->all, "every law");
   c->add_flag("--json", o->as_json, "an array of {law, operator, ratio, bound, note, holds} or {law, operator, skipped}");
   c->footer("A failure: its law on its operator. A spec: every law on every operator. Exit code 1 when a law is broken.");

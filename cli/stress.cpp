@@ -10,13 +10,14 @@
 #include "cli/commands.h"
 #include "cli/stress_json.h"
 #include "generators/classes.h"
+#include "property_tests/defects.h"
 
 namespace delassus::cli {
 
 namespace {
 
 struct Options {
-  std::string time = "60s", shard, report, folder = ".";
+  std::string time = "60s", shard, report, folder = ".", defect;
   std::optional<std::uint64_t> seed;
   std::int64_t count = 0;
   std::size_t failures = 1;
@@ -97,7 +98,8 @@ laws::Search search_of(const Options& o) {
   s.count = o.count;
   s.most_failures = o.failures;
   s.ops.clear();
-  for (const OperatorRow* row : chosen_operators(o.ops)) s.ops.push_back(*row);
+  for (const OperatorRow* row : chosen_operators(o.ops, o.defect)) s.ops.push_back(*row);
+  if (!o.defect.empty()) s.left_out = laws::left_out(laws::find_defect(o.defect));
   return s;
 }
 
@@ -140,7 +142,7 @@ int conclude(const laws::Found& f, const Options& o) {
     const std::string file = (std::filesystem::path(o.folder) / file_name(x)).string();
     print_failure(x);
     write_text(file, failure_json(x).dump(1));
-    std::printf("  delassus replay %s\n", file.c_str());
+    std::printf("  delassus replay %s%s\n", file.c_str(), x.op == o.defect ? (" --defect " + o.defect).c_str() : "");
   }
   if (!o.report.empty()) {
     std::string file = o.report;
@@ -178,6 +180,7 @@ void add_stress(CLI::App& app, Run& run) {
   c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed");
   c->add_option("--shard", o->shard, "i/n: problems i, i + n, …; when left out, rank and size set by the launcher");
   c->add_option("--op", o->ops, "only these operators");
+  c->add_option("--defect", o->defect, "an operator that is wrong in one respect (see `delassus list defects`): what the search must find");
   c->add_option("--failures", o->failures, "stop after this many pairs of law and operator")->check(CLI::PositiveNumber)->capture_default_str();
   c->add_option("--folder", o->folder, "where failures are written")->check(CLI::ExistingDirectory)->capture_default_str();
   c->add_option("--report", o->report, "write what was done as JSON; {shard} in the name becomes the shard's number");

@@ -24,9 +24,8 @@ constexpr Pinned problems[] = {
     {"chain", 2, 1},       {"generic", 2, 1},      {"generic", 5, 1},       {"generic", 5, 2},     {"random_tree", 5, 1},
     {"lattice", 4, 1},     {"massless", 5, 1},     {"block_damping", 3, 1}, {"four_bar", 4, 1},    {"several_trees", 4, 1},
     {"joint_friction", 4, 1}, {"hard", 3, 1},      {"partly_hard", 3, 1},   {"hard_redundant", 2, 1}, {"no_rows", 4, 1},
-    {"no_bodies", 0, 1},   {"generic", 8, 1},      {"contacts", 3, 1},      {"star", 4, 2},        {"redundant", 5, 1},
-    {"comb", 6, 1},        {"mass_ratio", 4, 1},   {"near_singular", 3, 1}, {"mixed_damping", 10, 1}, {"humanoid", 10, 1},
-    {"random_tree", 12, 3}, {"generic", 13, 1}};
+    {"no_bodies", 0, 1},   {"generic", 8, 1},      {"contacts", 1, 1},      {"star", 4, 2},        {"redundant", 2, 1},
+    {"comb", 6, 1},        {"mass_ratio", 4, 1},   {"near_singular", 3, 1}, {"mixed_damping", 10, 1}};
 
 /// Prints and returns whether a number is larger than what was measured when this was written.
 bool exceeds(const char* what, Index got, Index most) {

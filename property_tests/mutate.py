@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Mutation testing of the operators' sources: one change at a time in a copy of the last commit, which the program
+"""Mutation testing of the operators' sources: one change at a time in a copy of a commit, which the program
 mutant_killer must notice.
 
     property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--shard i/n]
@@ -15,6 +15,7 @@ import os
 import random
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import time
@@ -160,16 +161,17 @@ def read_equivalent(path):
 
 
 class Copy:
-    """A copy of the last commit with a build of its own. Only double and Rational are compiled in the operators' files."""
+    """A copy of a commit, with the killer of the working tree and a build of its own. Only double and Rational are compiled in the operators' files."""
 
-    def __init__(self, work):
+    def __init__(self, work, commit):
         self.tree, self.build = os.path.join(work, "tree"), os.path.join(work, "build")
         os.makedirs(self.tree, exist_ok=True)
-        archive = subprocess.run(["git", "-C", ROOT, "archive", "HEAD"], stdout=subprocess.PIPE, check=True).stdout
+        archive = subprocess.run(["git", "-C", ROOT, "archive", commit], stdout=subprocess.PIPE, check=True).stdout
         fresh = os.path.join(work, "fresh")
         subprocess.run(["rm", "-rf", fresh], check=True)
         os.makedirs(fresh)
         subprocess.run(["tar", "-x", "-C", fresh], input=archive, check=True)
+        shutil.copy(os.path.join(HERE, "mutant_killer.cpp"), os.path.join(fresh, "property_tests"))
         self.fewer_scalars(os.path.join(fresh, "algorithms"))
         with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
             f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n")
@@ -204,7 +206,7 @@ class Copy:
             subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCCACHE=OFF",
                             "-DCMAKE_CXX_FLAGS=-O1 -march=native -w",
                             # scalars that are not compiled are not called either
-                            "-DCMAKE_EXE_LINKER_FLAGS=-Wl,--unresolved-symbols=ignore-all"], check=True, stdout=subprocess.DEVNULL)
+                            "-DCMAKE_EXE_LINKER_FLAGS=-no-pie -Wl,--unresolved-symbols=ignore-all"], check=True, stdout=subprocess.DEVNULL)
 
     def path(self, name):
         return os.path.join(self.tree, "algorithms", name)
@@ -273,7 +275,7 @@ def chosen(options, texts):
 
 
 def run(options):
-    copy = Copy(options.work)
+    copy = Copy(options.work, options.commit)
     texts = {name: open(copy.path(name), encoding="utf-8").read() for name in options.files}
     todo = chosen(options, texts)
     if options.list:
@@ -310,6 +312,7 @@ def run(options):
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--work", required=True, help="folder for the copy and its build")
+    p.add_argument("--commit", default="HEAD", help="whose sources are mutated (HEAD)")
     p.add_argument("--files", nargs="+", default=FILES, choices=FILES)
     p.add_argument("--sample", type=int, default=0, help="that many, drawn at random; 0: all")
     p.add_argument("--seed", type=int, default=1)

@@ -25,12 +25,6 @@ MatrixX<T> Transcription<T>::K(const Structure::LinkConstraint& e, const Structu
   return m;
 }
 
-template <class T> MatrixX<T> Transcription<T>::R(Index row, Index rows) const {
-  Matrix m = Matrix::Zero(rows, rows);
-  for (Index r = 0; r < rows; ++r) m(r, r) = R_[row + r];
-  return m;
-}
-
 // Alg. 1, lines 2–6, merged: f_i from the constraint forces; u_i starts as τ_i = 𝒦ᵢᵀ λ_i.
 template <class T> void Transcription<T>::start(const VectorX<T>& lambda, bool wrong_sign) {
   const Index n = s_.bodies();
@@ -145,7 +139,8 @@ template <class T> VectorX<T> Transcription<T>::forward() {
     const Matrix Si = S(i);
     for (const Index j : N_[i]) {  // line 35
       if (is(Printed::line_35_subspace)) {
-        if (s_.dofs(i) == s_.dofs(j)) u_[i] -= (H(i, j) * S(j)).transpose() * a_[j];
+        if (s_.dofs(i) != s_.dofs(j)) return {};
+        u_[i] -= (H(i, j) * S(j)).transpose() * a_[j];
       } else if (is(Printed::line_35_transposed)) {
         u_[i] -= (H(i, j) * Si).transpose() * a_[j];
       } else {
@@ -171,17 +166,16 @@ template <class T> VectorX<T> Transcription<T>::apply(const VectorX<T>& lambda) 
 }
 
 template <class T> VectorX<T> Transcription<T>::solve(const VectorX<T>& a) {
-  VectorX<T> compliant(a.size());
-  for (Index r = 0; r < a.size(); ++r) compliant[r] = R_[r] * a[r];
+  const VectorX<T> compliant = R_ * a;
   start(compliant, is(Printed::merged_solve_sign));
   couple();
   joint_weights();
   if (!backward()) return {};
-  VectorX<T> lambda = forward();
-  for (Index r = 0; r < a.size(); ++r) lambda[r] = compliant[r] - R_[r] * lambda[r];
-  return lambda;
+  const VectorX<T> motion = forward();
+  return motion.size() == 0 ? motion : VectorX<T>(compliant - R_ * motion);
 }
 
+template class Transcription<Quad>;
 template class Transcription<Rational>;
 
 }  // namespace delassus::paper

@@ -41,6 +41,7 @@ struct Search {
   std::int64_t count = 0;         ///< problems of all shards together; 0: until the time is over
   std::size_t most_failures = 1;  ///< stops after this many pairs of law and operator
   std::vector<OperatorRow> ops = operators();
+  std::string_view left_out;      ///< a law not held against them; empty: none
   std::function<void(const Found&)> progress;   ///< called about every `every` seconds
   double every = 5;
 };
