@@ -1,6 +1,7 @@
 #include "algorithms/refinement.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace delassus {
 
@@ -63,7 +64,7 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   return now;
 }
 
-// B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂, relative to λᵀa
+// B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
 template <class T> double Refinement<T>::certify(Buffers& b) const {
   if (!invertible_.ok()) return -1;
   weights_.multiply(b.r2, b.scratch);
@@ -74,8 +75,10 @@ template <class T> double Refinement<T>::certify(Buffers& b) const {
     b.scratch[r] = T(0);
   }
   squared += factor_M_.solve(b.scratch, b.r1, nullptr, nullptr, b.rest);
-  const double bound = std::sqrt(magnitude(squared));
-  return (bound == 0 ? 0 : bound / std::sqrt(magnitude(total))) + 2 * unit_roundoff<T>;
+  const double bound = std::sqrt(magnitude(squared)), s = static_cast<double>(total);
+  if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
+  const double t = relative(bound, std::sqrt(s));
+  return t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<T>;
 }
 
 template <class T> Index Refinement<T>::workspace(Index of_correction) const {

@@ -10,8 +10,12 @@
 //          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|.
 //          Steps end when that is below eps.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
-//          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B. error_bound is B relative to
-//          the energy norm of the solution, plus its rounding floor 2 eps. There is none where R⁻¹ has a zero.
+//          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
+//          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
+//          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
+//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. There is none where R⁻¹ has a zero.
+//          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
+//          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.
 // Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual and half a sweep.
 // Workspace  4 n + 5 m, the residual's or the correction's.
 // Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
