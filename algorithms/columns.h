@@ -26,6 +26,7 @@ template <class T> [[nodiscard]] Index columns_workspace(Index m, Index values, 
   a.backward_error = std::max(a.backward_error, b.backward_error);
   a.error_bound = std::max(a.error_bound, b.error_bound);
   a.error_estimate = std::max(a.error_estimate, b.error_estimate);
+  if (!b.rung.empty()) a.rung = b.rung;
   return a;
 }
 

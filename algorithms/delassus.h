@@ -10,6 +10,7 @@
 // concurrently with a Workspace each.
 #pragma once
 
+#include <limits>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -27,6 +28,8 @@ template <class T> using Ref = Eigen::Ref<MatrixX<T>, 0, Eigen::OuterStride<>>;
 template <class T> class Workspace {
  public:
   explicit Workspace(Index scalars);
+  /// A part of another one.
+  Workspace(T* begin, Index scalars) : begin_(begin), size_(scalars) {}
   [[nodiscard]] T* data() { return begin_; }
   [[nodiscard]] Index size() const { return size_; }
   void fill(const T& value) { std::fill(begin_, begin_ + size_, value); }
@@ -35,6 +38,15 @@ template <class T> class Workspace {
   std::vector<T> storage_;
   T* begin_ = nullptr;  // 64-byte aligned
   Index size_ = 0;
+};
+
+/// What a solve is asked for: a bound on its error, relative, in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹} (= λᵀa).
+struct Accuracy {
+  double error = 0;
+  /// All the digits the arithmetic has.
+  static constexpr Accuracy full() { return {0}; }
+  /// One evaluation: no residual, no certificate.
+  static constexpr Accuracy fastest() { return {std::numeric_limits<double>::infinity()}; }
 };
 
 template <class T> class Operator {
@@ -52,6 +64,9 @@ template <class T> class Operator {
   [[nodiscard]] Report apply(ConstRef<T> f, Ref<T> a, Workspace<T>& workspace) const;
   /// f = A⁻¹ a. Shapes m×k. When the report is not ok, f holds NaN (or the best iterate for not_converged).
   [[nodiscard]] Report solve(ConstRef<T> a, Ref<T> f, Workspace<T>& workspace) const;
+  /// The same, to a wanted accuracy: no more work than its certificate asks for, and not_converged when it stays above.
+  /// Operators without a certificate solve as they always do.
+  [[nodiscard]] Report solve(ConstRef<T> a, Ref<T> f, Accuracy wanted, Workspace<T>& workspace) const;
 
   [[nodiscard]] Index size() const { return structure_ ? structure_->rows : 0; }   ///< rows m
   /// Scalars a Workspace needs for `columns` columns.
@@ -70,6 +85,7 @@ template <class T> class Operator {
   virtual Report do_update_damping(const Damping<T>& damping) = 0;
   virtual Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const;
   virtual Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const;
+  virtual Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy, T* workspace) const { return do_solve(a, f, workspace); }
   [[nodiscard]] virtual Index do_workspace(Index columns) const = 0;
   [[nodiscard]] virtual Index do_bytes() const = 0;
 
@@ -99,6 +115,8 @@ struct OperatorRow {
   bool terminates_exactly;    ///< exact in exact arithmetic
   bool decides_rank = false;  ///< solves a singular A too when a is in its range, and names the dependent rows
   ErrorClass apply_error, solve_error;
+  double factor_eps = 0x1p-53;  ///< unit roundoff of the arithmetic its factor runs in: where 1/κ(A) is not far above it,
+                                ///< the operator may give up, and says so
   std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>,
              Maker<PrimeField>>
       makers;  ///< nullptr where a scalar is not served

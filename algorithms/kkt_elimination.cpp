@@ -104,8 +104,10 @@ template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f) const {
   using std::abs;
   const Index m = this->size();
+  T largest(0);
+  for (Index r = 0; r < m; ++r) largest = std::max(largest, T(abs(a[r])));
   for (const Index r : dependent_) {
-    T residual = a[r], size = T(abs(a[r]));
+    T residual = a[r], size = largest;
     for (Index k = 0; k < m; ++k) {
       residual -= A_(r, k) * f[k];
       size += T(abs(A_(r, k))) * T(abs(f[k]));
@@ -116,14 +118,14 @@ Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f) co
 }
 
 template <class T, Dependent policy>
-Report KktEliminationWith<T, policy>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
+Report KktEliminationWith<T, policy>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
   if (!undamped_.ok()) return undamped_;
   if (!factored_.ok()) return factored_;
   Report worst;
   for (Index c = 0; c < a.cols(); ++c) {
     const T* const right = a.data() + c * a.outerStride();
     T* const force = f.data() + c * f.outerStride();
-    Report report = refinement_.solve(right, force, Accuracy::full(), max_steps, [this](auto... args) { correct(args...); }, workspace);
+    Report report = refinement_.solve(right, force, wanted, max_steps, [this](auto... args) { correct(args...); }, workspace);
     const Report consistent = check_dependent(right, force);
     if (!consistent.ok()) report = consistent;
     worst = worse(worst, report);

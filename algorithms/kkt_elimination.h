@@ -7,7 +7,7 @@
 //          rounding left of it.
 //          A hard row whose pivot is not above 30 eps · steps · A_rr depends on the rows before it.
 //            kkt_elimination   leaves such rows out (λ_r = 0) and names them in dependent_rows(); a that is not in the range
-//                              of A is `inconsistent`: the residual of a row left out exceeds 30 eps · m (|a_r| + |A_r·||λ|).
+//                              of A is `inconsistent`: the residual of a row left out exceeds 30 eps · m (max|a| + |A_r·||λ|).
 //            dense_refined     reports lost_pivot.
 // Cost     update: m sweeps of the factor of M, m³/3; solve: per step 2 m² + 4 sweeps + a residual.
 // Workspace  refinement's + 2 m.
@@ -32,7 +32,10 @@ template <class T, Dependent policy> class KktEliminationWith : public Operator<
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
+    return do_solve_to(a, f, Accuracy::full(), workspace);
+  }
+  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 

@@ -20,7 +20,7 @@ template <class T> Report LcabaQr<T>::do_update_damping(const Damping<T>& dampin
   return factored_ = factored_M_.ok() ? factored_ : factored_M_;
 }
 
-template <class T> Report LcabaQr<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
+template <class T> Report LcabaQr<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
   if (!factored_.ok()) return factored_;
   const auto correct = [this](const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) {
     factor_.solve_kkt(r1, r2, d_nu, d_lambda, work);
@@ -28,7 +28,7 @@ template <class T> Report LcabaQr<T>::do_solve(ConstRef<T> a, Ref<T> f, T* works
   Report worst;
   for (Index c = 0; c < a.cols(); ++c)
     worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(),
-                                           Accuracy::full(), max_steps, correct, workspace));
+                                           wanted, max_steps, correct, workspace));
   return worst;
 }
 

@@ -26,7 +26,10 @@ template <class T> class LcabaQr : public Operator<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
+    return do_solve_to(a, f, Accuracy::full(), workspace);
+  }
+  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 

@@ -31,16 +31,17 @@ template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_
   refinement_.weights().multiply(rate, d_lambda);
 }
 
-template <class T> Report LcabaRefined<T>::solve_to(const T* a, T* f, Accuracy wanted, T* work) const {
-  return refinement_.solve(a, f, wanted, max_steps,
-                           [this](auto... arguments) { correct(arguments...); }, work);
+template <class T>
+Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
+  if (!factored_.ok()) return factored_;
+  return refinement_.solve(a, f, wanted, max_steps, [this](auto... arguments) { correct(arguments...); }, work, nu);
 }
 
-template <class T> Report LcabaRefined<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
-  if (!factored_.ok()) return factored_;
+template <class T>
+Report LcabaRefined<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
   Report worst;
   for (Index c = 0; c < a.cols(); ++c)
-    worst = worse(worst, solve_to(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), Accuracy::full(), workspace));
+    worst = worse(worst, solve_with_motion(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), nullptr, wanted, workspace));
   return worst;
 }
 

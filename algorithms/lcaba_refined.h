@@ -3,7 +3,7 @@
 // What     f = Λ_R a to full accuracy wherever eps · R λmax(Λ⁻¹) < 1, with a rigorous error bound.
 // Formula  (K) of refinement.h by the inversion lemma:  M_R δν = r₁ + JᵀR r₂,  δλ = R (r₂ − J δν).
 // Singular as lcaba. Refinement that has not reached its target after max_steps is reported as not_converged.
-// How      the factor of lcaba; the loop and the certificate of refinement.h. solve_to takes what accuracy is wanted.
+// How      the factor of lcaba; the loop and the certificate of refinement.h.
 // Cost     update: lcaba + the factor of M; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
 // Workspace  that of lcaba + refinement's.
 // Error    refined: within the data's own sensitivity, or eps of the largest force and eps in the energy norm.
@@ -19,17 +19,17 @@ template <class T> class LcabaRefined : public Operator<T> {
  public:
   static constexpr int max_steps = 5;
 
-  /// One column to a wanted accuracy. Shapes m. `work` needs workspace() scalars.
-  Report solve_to(const T* a, T* f, Accuracy wanted, T* work) const;
-  /// What the last update came to.
-  [[nodiscard]] const Report& updated() const { return factored_; }
-  [[nodiscard]] const Refinement<T>& refinement() const { return refinement_; }
+  /// One column, as solve; nu, when given, receives ν = M⁻¹Jᵀf (n), which keeps its digits where J^T f cancels.
+  Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const;
 
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
+    return do_solve_to(a, f, Accuracy::full(), workspace);
+  }
+  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 

@@ -80,6 +80,13 @@ template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Workspace<
   return finished<T>(do_solve(a, f, w.data()), a, f);
 }
 
+template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Accuracy wanted, Workspace<T>& w) const {
+  check(a.rows(), a.cols(), f.rows(), f.cols(), a.data(), f.data(), w);
+  require(wanted.error >= 0, "Operator::solve: the wanted accuracy is negative or NaN");
+  if (a.size() == 0) return {};
+  return finished<T>(do_solve_to(a, f, wanted, w.data()), a, f);
+}
+
 template <class T> Report Operator<T>::do_apply(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 template <class T> Report Operator<T>::do_solve(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 

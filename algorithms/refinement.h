@@ -22,22 +22,12 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "algorithms/columns.h"
 #include "algorithms/factor.h"
 #include "algorithms/kkt_residual.h"
 
 namespace delassus {
-
-/// What a solve is asked for: a bound on its error, relative, in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹}.
-struct Accuracy {
-  double error = 0;
-  /// All the digits the arithmetic has.
-  static constexpr Accuracy full() { return {0}; }
-  /// One evaluation, no residual, no certificate.
-  static constexpr Accuracy fastest() { return {std::numeric_limits<double>::infinity()}; }
-};
 
 template <class T> class Refinement {
  public:

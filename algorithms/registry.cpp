@@ -3,6 +3,7 @@
 #include "algorithms/cg.h"
 #include "algorithms/dense_cholesky.h"
 #include "algorithms/kkt_elimination.h"
+#include "algorithms/ladder.h"
 #include "algorithms/lcaba.h"
 #include "algorithms/lcaba_qr.h"
 #include "algorithms/lcaba_refined.h"
@@ -59,6 +60,11 @@ const std::vector<OperatorRow>& operators() {
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
        .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
        .makers = makers<LcabaRefined>()},
+      {.name = "ladder", .summary = "the cheapest rung that reaches the wanted accuracy: lcaba_refined, then what it takes",
+       .formula = "Λ_R a by lcaba_refined, lcaba_qr, proximal or kkt_elimination", .source = "algorithms/ladder.h",
+       .cost = "that of the rungs climbed", .applies = false, .solves = true, .zero_damping = true,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = ordered_makers<Ladder>()},
       {.name = "lcaba_qr", .summary = "square-root elimination: accurate however stiff or redundant the constraints",
        .formula = "min ‖ν‖²_M + ‖a − J ν‖²_R, f read from its residual", .source = "algorithms/square_root_factor.h",
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
@@ -68,6 +74,7 @@ const std::vector<OperatorRow>& operators() {
        .formula = "as lcaba_refined with R₀⁻¹ = R⁻¹ + diag(d)/2¹⁰ in float", .source = "algorithms/proximal.h",
        .cost = "O((n + m) steps)", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
        .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .factor_eps = 0x1p-24,
        .makers = {make<LcabaFloat, double>, nullptr, nullptr, nullptr, nullptr, nullptr}},
       {.name = "proximal", .summary = "hard constraints by proximal iterations on lcaba",
        .formula = "as lcaba_refined with R₀⁻¹ = R⁻¹ + diag(d)/2²⁰", .source = "Rockafellar 1976; algorithms/proximal.h",

@@ -44,6 +44,7 @@ struct Report {
   double error_bound = -1;       ///< rigorous bound on the error, relative, in the energy norm; −1: not computed
   double error_estimate = -1;    ///< size of the last correction, relative: the error before it; −1: not computed
   double rcond_estimate = -1;    ///< estimate of 1/κ; −1: not computed
+  std::string_view rung = {};    ///< of the ladder: the operator that answered
 
   [[nodiscard]] bool ok() const { return status == Status::ok; }
 };

@@ -1,5 +1,6 @@
 // `delassus apply SCENE --op NAME [--solve]`: one operator on one vector.
 #include <cstdio>
+#include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
@@ -14,7 +15,7 @@ namespace {
 struct Options {
   std::string scene, op, input;
   bool solve = false, as_json = false;
-  double damping = 0;
+  double damping = 0, accuracy = 0;
 };
 
 void require_capability(const OperatorRow& row, bool solve) {
@@ -30,7 +31,7 @@ struct Answer {
   Report report;
 };
 
-Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>& input, bool solve) {
+Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>& input, bool solve, Accuracy wanted) {
   const Problem<double> problem = problem_of(scene);
   const auto op = row.make<double>();
   op->analyze(problem.structure);
@@ -38,7 +39,7 @@ Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>
   Workspace<double> workspace(op->workspace());
   const MatrixX<double> in = input;
   MatrixX<double> out = MatrixX<double>::Zero(in.rows(), 1);
-  Report report = solve ? op->solve(in, out, workspace) : op->apply(in, out, workspace);
+  Report report = solve ? op->solve(in, out, wanted, workspace) : op->apply(in, out, workspace);
   if (report.ok() && !update.ok() && solve) report = update;
   return {out.col(0), report};
 }
@@ -48,7 +49,13 @@ void print_text(const Options& o, const VectorX<double>& input, const Answer& an
               "input", "output");
   for (Index i = 0; i < input.size(); ++i)
     std::printf("%6lld  %24.17g  %24.17g\n", static_cast<long long>(i), input[i], answer.output[i]);
-  std::printf("status %s\n", std::string(name(answer.report.status)).c_str());
+  const Report& r = answer.report;
+  std::printf("status %s", std::string(name(r.status)).c_str());
+  if (!r.rung.empty()) std::printf(", by %s", std::string(r.rung).c_str());
+  if (r.iterations > 0) std::printf(", %d iterations", r.iterations);
+  if (r.error_bound >= 0) std::printf(", error at most %.1e (relative, energy norm)", r.error_bound);
+  if (r.error_estimate >= 0) std::printf(", last correction %.1e", r.error_estimate);
+  std::printf("\n");
 }
 
 int apply(const Options& o, bool has_damping) {
@@ -59,7 +66,7 @@ int apply(const Options& o, bool has_damping) {
   const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
   const VectorX<double> input =
       o.input.empty() ? VectorX<double>::Ones(structure->rows) : read_vector(o.input, structure->rows, meaning);
-  const Answer answer = compute(row, scene, input, o.solve);
+  const Answer answer = compute(row, scene, input, o.solve, Accuracy{o.accuracy});
   if (o.as_json) {
     json j = {{"scene", scene.name}, {"op", row.name}, {"function", o.solve ? "solve" : "apply"},
               {"dof", structure->dofs()}, {"rows", structure->rows}, {"damping", damping_json(scene.damping)},
@@ -82,6 +89,13 @@ void add_apply(CLI::App& app, Run& run) {
   c->add_option("scene", o->scene, "name, .yaml file or swimmer:N")->required();
   c->add_option("--op", o->op, "operator (see `delassus list operators`)")->required();
   c->add_flag("--solve", o->solve, "f = A⁻¹ a instead of a = A f");
+  c->add_option("--accuracy", o->accuracy,
+                "with --solve: bound wanted on the relative error in the energy norm; 0: all digits; inf: no certificate")
+      ->check([](const std::string& text) {
+        char* end = nullptr;
+        const double x = std::strtod(text.c_str(), &end);
+        return !text.empty() && *end == 0 && x >= 0 ? std::string() : "'" + text + "' is not a number ≥ 0 (accepted: 0 … inf)";
+      });
   c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
   CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's");
   c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report}");

@@ -1,0 +1,142 @@
+#include "algorithms/ladder.h"
+
+#include <algorithm>
+
+#include "algorithms/columns.h"
+
+namespace delassus {
+
+namespace {
+/// First rows and numbers of rows of the constraints of several rows, ascending.
+std::vector<std::pair<Index, Index>> wide_constraints(const Structure& s) {
+  std::vector<std::pair<Index, Index>> all;
+  const auto add = [&](const auto& c) {
+    if (c.rows > 1) all.emplace_back(c.row, c.rows);
+  };
+  std::for_each(s.link_constraints.begin(), s.link_constraints.end(), add);
+  std::for_each(s.joint_constraints.begin(), s.joint_constraints.end(), add);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+}  // namespace
+
+template <class T> void Ladder<T>::do_analyze() {
+  const Structure& s = *this->structure();
+  rungs_.clear();
+  for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
+    const OperatorRow& row = find_operator(name);
+    if (!std::get<Maker<T>>(row.makers) || (row.decides_rank && s.rows > max_dense_rows)) continue;
+    rungs_.push_back({.row = &row, .op = row.make<T>()});
+    rungs_.back().op->analyze(this->structure());
+  }
+  problem_ = Problem<T>(this->structure());
+  plain_.diagonal.assign(static_cast<std::size_t>(s.rows), T(0));
+  blocks_ = plain_;
+  for (const auto& [row, rows] : wide_constraints(s)) blocks_.blocks.push_back({row, MatrixX<T>::Zero(rows, rows)});
+}
+
+// A copy that allocates nothing.
+template <class T> void Ladder<T>::keep(const Damping<T>& damping) {
+  damping_ = damping.blocks.empty() ? &plain_ : &blocks_;
+  std::copy(damping.diagonal.begin(), damping.diagonal.end(),
+            (damping.blocks.empty() ? plain_ : blocks_).diagonal.begin());
+  if (damping.blocks.empty()) return;
+  auto given = damping.blocks.begin();
+  for (auto& kept : blocks_.blocks) {
+    const Index rows = kept.R_inverse.rows();
+    kept.R_inverse.setZero();
+    for (Index r = 0; r < rows; ++r) {
+      kept.R_inverse(r, r) = damping.diagonal[kept.row + r];
+      blocks_.diagonal[kept.row + r] = T(0);
+    }
+    for (; given != damping.blocks.end() && given->row < kept.row + rows; ++given) {
+      const Index at = given->row - kept.row;
+      if (at < 0) continue;  // a block over the row of a constraint of one row
+      kept.R_inverse.block(at, at, given->R_inverse.rows(), given->R_inverse.rows()) = given->R_inverse;
+    }
+  }
+  for (const auto& b : damping.blocks)
+    if (b.R_inverse.rows() == 1) blocks_.diagonal[b.row] += in_wide(b.row) ? T(0) : b.R_inverse(0, 0);
+}
+
+template <class T> bool Ladder<T>::in_wide(Index row) const {
+  return std::any_of(blocks_.blocks.begin(), blocks_.blocks.end(),
+                     [row](const auto& b) { return row >= b.row && row < b.row + b.R_inverse.rows(); });
+}
+
+template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  problem_ = problem;
+  keep(damping);
+  for (Rung& rung : rungs_) rung.state = State::stale;
+  return first_usable();
+}
+
+template <class T> Report Ladder<T>::do_update_damping(const Damping<T>& damping) {
+  keep(damping);
+  for (Rung& rung : rungs_)
+    if (rung.state == State::current) rung.state = State::stale_damping;
+  return first_usable();
+}
+
+// The first rung that can be used, factored; what the first says when none can.
+template <class T> Report Ladder<T>::first_usable() {
+  Report first;
+  for (Rung& rung : rungs_) {
+    const Report report = prepare(rung);
+    if (report.ok()) return report;
+    if (first.ok() || first.status == Status::zero_damping) first = report;
+  }
+  return first;
+}
+
+template <class T> Report Ladder<T>::prepare(Rung& rung) const {
+  const std::lock_guard lock(preparing_);
+  if (rung.state == State::stale) rung.updated = rung.op->update(problem_, *damping_);
+  if (rung.state == State::stale_damping) rung.updated = rung.op->update_damping(*damping_);
+  rung.state = State::current;
+  return rung.updated;
+}
+
+template <class T> Report Ladder<T>::climb(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
+  const Index m = this->size();
+  Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
+  Workspace<T> rest(workspace + padded(m), do_workspace(1) - padded(m));
+  Report best{Status::not_supported};
+  for (Rung& rung : rungs_) {
+    Report report = prepare(rung);
+    if (report.ok()) report = rung.op->solve(a, answer, wanted, rest);
+    report.rung = rung.row->name;
+    const bool has_answer = report.ok() || report.status == Status::not_converged;
+    const bool better = best.status != Status::not_converged ||
+                        (report.error_bound >= 0 && !(report.error_bound >= best.error_bound));
+    if (report.ok() || (has_answer && better)) f = answer;
+    if (report.ok()) return report;
+    if (has_answer ? better : best.status == Status::not_supported || best.status == Status::zero_damping) best = report;
+  }
+  return best;
+}
+
+template <class T> Report Ladder<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
+  Report worst;
+  for (Index c = 0; c < a.cols(); ++c) worst = worse(worst, climb(a.col(c), f.col(c), wanted, workspace));
+  return worst;
+}
+
+template <class T> Index Ladder<T>::do_workspace(Index) const {
+  Index most = 0;
+  for (const Rung& rung : rungs_) most = std::max(most, rung.op->workspace());
+  return padded(this->size()) + most;
+}
+
+template <class T> Index Ladder<T>::do_bytes() const {
+  Index all = 0;
+  for (const Rung& rung : rungs_) all += rung.op->bytes();
+  return all + static_cast<Index>(problem_.H.size() * sizeof(Matrix6<T>) +
+                                  (problem_.S.size() + problem_.K.size()) * sizeof(Vector6<T>) +
+                                  (problem_.armature.size() + problem_.joint_K.size() + 2 * plain_.diagonal.size()) * sizeof(T));
+}
+
+#define DELASSUS_INSTANTIATE(T) template class Ladder<T>;
+DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
+
+}  // namespace delassus

@@ -1,0 +1,123 @@
+// The ladder of accuracies: no more work than asked for, a certificate that reaches what was asked, and never a silently
+// worse answer.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "algorithms/delassus.h"
+#include "generators/build.h"
+#include "generators/families.h"
+
+namespace delassus {
+namespace {
+
+struct Solver {
+  explicit Solver(std::string_view family, double damping = -1, std::string_view op_name = "ladder")
+      : built(generators::build(generators::find_family(family).make(12, 1))), op(find_operator(op_name).make<double>()) {
+    if (damping >= 0) built.damping = Damping<double>::uniform(built.problem.structure->rows, damping);
+    op->analyze(built.problem.structure);
+    updated = op->update(built.problem, built.damping);
+    a = MatrixX<double>::Ones(built.problem.structure->rows, 1);
+    f = MatrixX<double>::Zero(a.rows(), 1);
+  }
+  Report solve(Accuracy wanted) {
+    Workspace<double> w(op->workspace());
+    return op->solve(a, f, wanted, w);
+  }
+  /// a = A f of a force, so that hard dependent rows agree.
+  void make_consistent() {
+    const auto apply = find_operator("aba_sweep").make<double>();
+    apply->analyze(built.problem.structure);
+    static_cast<void>(apply->update(built.problem, built.damping));
+    Workspace<double> w(apply->workspace());
+    const MatrixX<double> force = a;
+    ASSERT_TRUE(apply->apply(force, a, w).ok());
+  }
+
+  generators::Built built;
+  std::unique_ptr<Operator<double>> op;
+  Report updated;
+  MatrixX<double> a, f;
+};
+
+TEST(Ladder, FastestTakesOneEvaluationAndGivesNoCertificate) {
+  Solver s("humanoid", 1e-4);
+  const Report r = s.solve(Accuracy::fastest());
+  EXPECT_TRUE(r.ok());
+  EXPECT_EQ(r.rung, "lcaba_refined");
+  EXPECT_EQ(r.iterations, 0);
+  EXPECT_LT(r.error_bound, 0);
+}
+
+TEST(Ladder, PaysOnlyForWhatIsAsked) {
+  Solver s("humanoid", 1e-4);
+  const Report loose = s.solve({1e-3}), full = s.solve(Accuracy::full());
+  EXPECT_EQ(loose.iterations, 0);
+  EXPECT_GE(loose.error_bound, 0);
+  EXPECT_LE(loose.error_bound, 1e-3);
+  EXPECT_GE(full.iterations, 1);
+  EXPECT_LE(full.error_bound, loose.error_bound);
+}
+
+TEST(Ladder, ACertifiedAnswerReachesEveryTargetItClaims) {
+  for (const double damping : {1e-2, 1e-6, 1e-10, 1e-14})
+    for (const double target : {1e-2, 1e-6, 1e-10}) {
+      Solver s("redundant", damping);
+      const Report r = s.solve({target});
+      if (r.ok()) {
+        EXPECT_GE(r.error_bound, 0) << damping;
+        EXPECT_LE(r.error_bound, target) << damping;
+      } else {
+        EXPECT_EQ(r.status, Status::not_converged);
+        EXPECT_GT(r.error_bound, target) << damping;
+      }
+    }
+}
+
+TEST(Ladder, ATargetBelowRoundingIsNotClaimed) {
+  Solver s("humanoid", 1e-4);
+  const Report r = s.solve({1e-20});
+  EXPECT_EQ(r.status, Status::not_converged);
+  EXPECT_GT(r.error_bound, 1e-20);
+  EXPECT_TRUE(s.f.allFinite());
+}
+
+TEST(Ladder, ClimbsWhereTheFirstRungFails) {
+  Solver first("redundant", 1e-15, "lcaba_refined"), s("redundant", 1e-15);
+  const Report alone = first.solve(Accuracy::full()), r = s.solve(Accuracy::full());
+  EXPECT_TRUE(r.ok()) << name(r.status);
+  if (!alone.ok()) {
+    EXPECT_NE(r.rung, "lcaba_refined");
+  }
+}
+
+TEST(Ladder, HardRowsAreSolvedOrRefusedByName) {
+  Solver s("hard");
+  EXPECT_TRUE(s.updated.ok());
+  const Report r = s.solve(Accuracy::full());
+  EXPECT_TRUE(r.ok());
+  EXPECT_TRUE(r.rung == "proximal" || r.rung == "kkt_elimination") << r.rung;
+  EXPECT_LT(r.error_bound, 0) << "no certificate where R⁻¹ has a zero";
+}
+
+TEST(KktElimination, NamesDependentRowsAndRefusesWhatTheyContradict) {
+  Solver s("hard_redundant", -1, "kkt_elimination");
+  EXPECT_FALSE(s.op->dependent_rows().empty());
+  const Report contradicted = s.solve(Accuracy::full());
+  EXPECT_EQ(contradicted.status, Status::inconsistent);
+  EXPECT_TRUE(std::isnan(s.f(0, 0)));
+  s.make_consistent();
+  EXPECT_TRUE(s.solve(Accuracy::full()).ok());
+  for (const Index r : s.op->dependent_rows()) EXPECT_EQ(s.f(r, 0), 0);
+}
+
+TEST(Ladder, MisuseAndNaN) {
+  Solver s("humanoid", 1e-4);
+  EXPECT_THROW(s.solve({-1}), std::logic_error);
+  EXPECT_THROW(s.solve({std::numeric_limits<double>::quiet_NaN()}), std::logic_error);
+  s.a(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(s.solve(Accuracy::full()).status, Status::not_finite);
+}
+
+}  // namespace
+}  // namespace delassus
