@@ -74,6 +74,7 @@ Damping<double> other_damping(Damping<double> damping) {
 }
 
 Operations count_operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping) {
+  if (!std::get<Maker<Counted>>(row.makers)) return {};
   const Problem<Counted> p = problem.cast<Counted>();
   const Damping<Counted> d = damping.cast<Counted>();
   const Damping<Counted> d2 = other_damping(damping).cast<Counted>();

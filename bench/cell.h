@@ -17,7 +17,8 @@ struct Limits {
 [[nodiscard]] Cell measure(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping,
                            const Limits& limits);
 
-/// Operations of each phase, counted with the scalar Counted; −1 for a phase the row does not have.
+/// Operations of each phase, counted with the scalar Counted; −1 for a phase the row does not have, and for rows that
+/// cannot be counted.
 [[nodiscard]] Operations count_operations(const OperatorRow& row, const Problem<double>& problem,
                                           const Damping<double>& damping);
 
