@@ -114,7 +114,7 @@ std::string summary_section(const Results& r) {
   s += fact(ratio < 0 ? "–" : escape(ratio_text(ratio)), where);
   s += largest_gap(r, apply_cost, "one application");
   s += largest_gap(r, first_solve_cost, "new configuration and one solve");
-  s += "</div><nav><a href=\"#overview\">Overview</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
+  s += "</div><nav><a href=\"#overview\">Overview</a> <a href=\"#accuracy\">Accuracy</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
        "<a href=\"#laws\">Laws</a> <a href=\"#operators\">Operators</a> <a href=\"#machine\">Reproduce</a></nav>";
   return s;
 }
@@ -131,7 +131,7 @@ std::string page(const Results& r) {
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>delassus: report</title>"
          "<link rel=\"icon\" href=\"data:,\"><style>" + std::string(page_style()) + "</style></head>\n<body>\n" +
-         summary_section(r) + "\n<main>\n" + overview_section(r) + "\n" + ladder_section(r) + "\n" + scenes_section(r) +
+         summary_section(r) + "\n<main>\n" + overview_section(r) + "\n" + accuracy_section(r) + "\n" + ladder_section(r) + "\n" + scenes_section(r) +
          "\n" + laws_section(r) + "\n" + operators_section(r) + "\n" + machine_section(r) + "\n</main></body></html>\n";
 }
 

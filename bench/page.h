@@ -14,6 +14,7 @@ namespace delassus::bench {
 // Its sections, in order.
 [[nodiscard]] std::string summary_section(const Results& results);
 [[nodiscard]] std::string overview_section(const Results& results);
+[[nodiscard]] std::string accuracy_section(const Results& results);
 [[nodiscard]] std::string ladder_section(const Results& results);
 [[nodiscard]] std::string scenes_section(const Results& results);
 [[nodiscard]] std::string laws_section(const Results& results);

@@ -11,6 +11,7 @@ struct Series {
   std::string title;
   std::vector<std::pair<double, double>> points;  ///< (x, y); both positive on logarithmic axes
   int style = 0;                                  ///< colour, dashes and marks; equal numbers look equal in every plot
+  bool ringed = false;    ///< the first point, by labelled_plot
 };
 
 enum class Axes : bool { linear, logarithmic };
@@ -20,5 +21,13 @@ enum class Axes : bool { linear, logarithmic };
 [[nodiscard]] std::string plot(const std::string& id, const std::string& label, const std::string& x_axis,
                                const std::string& y_axis, const std::vector<Series>& series,
                                Axes axes = Axes::logarithmic);
+
+/// For many series whose points lie close: both axes logarithmic, every series named at the right edge with a thin line
+/// to its rightmost point. Otherwise as `plot`.
+[[nodiscard]] std::string labelled_plot(const std::string& id, const std::string& label, const std::string& x_axis,
+                                        const std::string& y_axis, const std::vector<Series>& series);
+
+/// The same picture as a file of its own: black on white.
+[[nodiscard]] std::string standalone(std::string svg);
 
 }  // namespace delassus::bench

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/accuracy_campaign.h"
+#include "bench/accuracy_digest.h"
 #include "bench/ladder.h"
 #include "bench/machine.h"
 #include "bench/page.h"
@@ -67,6 +69,15 @@ void check_scenes(const std::vector<Scene>& scenes, bool quick, Results& r, cons
   for (std::size_t k = 0; k < index.size(); ++k) r.scenes[index[k]] = std::move(results[k]);
 }
 
+constexpr double accuracy_time = 10;  // seconds; what has not begun by then is left out
+
+AccuracyResult accuracy_of(const ReportOptions& options, const Progress& progress) {
+  accuracy::Options timed{.dampings = accuracy::dampings_up_to(1e-2), .budget = 0.001, .longest = 0.02};
+  const accuracy::Campaign c =
+      accuracy::run_campaign({options.scenes, accuracy::rungs(), timed, false, options.quick ? accuracy_time / 2 : accuracy_time}, progress);
+  return {accuracy::overview(c.here, accuracy::Price::time), accuracy::digits_grid(c.families), c.left_out};
+}
+
 void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -92,6 +103,7 @@ Results run_report(const ReportOptions& options, const Progress& progress) {
     progress(format("time  %2d/%zu  %s  %lld dofs, %lld rows", ++n, scenes.size(), pad_right(s.name, 26).c_str(),
                     static_cast<long long>(s.dofs), static_cast<long long>(s.rows)));
   }
+  r.accuracy = accuracy_of(options, progress);
   if (options.ladder)
     r.ladder = climb(ladder_sizes(options.quick ? 1000 : 10000), limits, options.quick ? 0.2 : 1.0, 5e8,
                      [&](const std::string& line) { progress("size  " + line); });

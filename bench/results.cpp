@@ -103,6 +103,7 @@ void to_json(json& j, const Results& r) {
        {"quick", r.quick}, {"seconds", r.seconds},
        {"units", {{"time", "µs per call"}, {"memory", "bytes"}, {"damping", "1/kg"}, {"ratio", "error/(eps*bound), holds below 30"}}},
        {"checked", r.checked()}, {"failed", r.failed()}, {"scenes", r.scenes}, {"swimmers", r.ladder}};
+  j["digits_kept"] = r.accuracy.digits;
   j["operators"] = json::array();
   for (const OperatorInfo& o : r.operators) j["operators"].push_back(to_json(o));
   j["laws"] = json::array();

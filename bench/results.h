@@ -78,6 +78,13 @@ struct RowInfo {
   std::string name, text, detail;
 };
 
+/// Accuracy against time, as shown.
+struct AccuracyResult {
+  std::string overview;                            ///< SVG: worst motion error against relative time
+  std::vector<std::vector<std::string>> digits;    ///< digits kept, rungs on families; the head first
+  std::vector<std::string> left_out;               ///< for want of time
+};
+
 struct Machine {
   std::string processor, system, compiler, flags, revision, date;
   int cores = 0;
@@ -91,6 +98,7 @@ struct Results {
   std::vector<RowInfo> laws, references;
   std::vector<SceneResult> scenes;
   std::vector<Rung> ladder;
+  AccuracyResult accuracy;
 
   [[nodiscard]] int checked() const;
   [[nodiscard]] int failed() const;

@@ -20,6 +20,7 @@ void add_describe(CLI::App& app, Run& run);
 void add_check(CLI::App& app, Run& run);
 void add_apply(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
+void add_accuracy(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_report(CLI::App& app, Run& run);
 void add_stress(CLI::App& app, Run& run);

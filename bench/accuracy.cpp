@@ -1,0 +1,172 @@
+#include "bench/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "algorithms/lcaba_refined.h"
+#include "bench/stopwatch.h"
+#include "bench/text.h"
+
+namespace delassus::accuracy {
+
+namespace {
+
+constexpr double longest_counted = 0.1;  // [s]: counting takes several times the time of a solve
+
+template <class T> VectorX<Quad> wide(const MatrixX<T>& x) {
+  VectorX<Quad> y(x.rows());
+  for (Index r = 0; r < x.rows(); ++r) y[r] = scalar_cast<Quad>(x(r, 0));
+  return y;
+}
+
+/// The motion a refined solve ends with, which is more accurate than M⁻¹Jᵀλ of its rounded λ; empty for other operators.
+template <class T> VectorX<Quad> own_motion(const Operator<T>& op, const MatrixX<T>& a, Workspace<T>& workspace) {
+  const auto* refined = dynamic_cast<const LcabaRefined<T>*>(&op);
+  if (!refined) return {};
+  MatrixX<T> f(a.rows(), 1), nu = MatrixX<T>::Constant(op.structure()->dofs(), 1, T(0));
+  static_cast<void>(refined->solve_with_motion(a.data(), f.data(), nu.data(), Accuracy::full(), workspace.data()));
+  return wide(nu);
+}
+
+/// One operator in one scalar on one problem.
+template <class T> class Run {
+ public:
+  Run(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a)
+      : op_(row.make<T>()), problem_(problem.cast<T>()), damping_(damping.cast<T>()) {
+    op_->analyze(problem_.structure);
+    workspace_ = std::make_unique<Workspace<T>>(op_->workspace());
+    a_.resize(a.size(), 1);
+    for (Index r = 0; r < a.size(); ++r) a_(r, 0) = scalar_cast<T>(a[r]);
+    f_ = a_;
+  }
+  Report solve() { return op_->solve(a_, f_, *workspace_); }
+  Report both() {
+    const Report updated = op_->update(problem_, damping_);
+    return updated.ok() ? solve() : updated;
+  }
+  Answer answer() { return {wide(f_), own_motion(*op_, a_, *workspace_)}; }
+
+ private:
+  std::unique_ptr<Operator<T>> op_;
+  Problem<T> problem_;
+  Damping<T> damping_;
+  MatrixX<T> a_, f_;
+  std::unique_ptr<Workspace<T>> workspace_;
+};
+
+template <class T> void time(Run<T>& run, double budget, Cell& cell) {
+  Report ignored;
+  cell.time = bench::stopwatch([&] { ignored = run.both(); }, budget).lowest;
+  cell.solve = bench::stopwatch([&] { ignored = run.solve(); }, budget).lowest;
+}
+
+/// Operations of update and solve. A counting scalar carries its residual as itself and may therefore take other steps
+/// than double does: −1 then.
+std::int64_t count(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a, int iterations) {
+  if (!std::get<Maker<Counted>>(row.makers)) return -1;
+  Run<Counted> run(row, problem, damping, a);
+  const std::int64_t before = operation_count.total();
+  const Report report = run.both();
+  return report.ok() && report.iterations == iterations ? operation_count.total() - before : -1;
+}
+
+/// One level of one subject.
+struct Question {
+  const Problem<double>& problem;
+  const Damping<double>& damping;
+  const VectorX<double>& a;
+  const Truth& truth;
+  const Options& options;
+};
+
+template <class T> Cell measure(const Rung& rung, const Question& q) {
+  Cell cell;
+  cell.rung = rung.name;
+  cell.style = rung.style;
+  Run<T> run(*rung.row, q.problem, q.damping, q.a);
+  const Report report = run.both();
+  cell.status = std::string(name(report.status));
+  cell.iterations = report.iterations;
+  cell.error_bound = report.error_bound;
+  cell.error_estimate = report.error_estimate;
+  const bool answered = report.ok() || report.status == Status::not_converged;
+  cell.errors = answered ? q.truth.errors_of(run.answer()) : Errors{std::nan(""), std::nan(""), std::nan(""), std::nan("")};
+  cell.time = cell.solve = std::nan("");
+  if (!answered || q.options.budget == 0) return cell;
+  time(run, q.options.budget, cell);
+  if (rung.arithmetic == Arithmetic::in_double && 1e-6 * cell.time < longest_counted)
+    cell.operations = count(*rung.row, q.problem, q.damping, q.a, report.iterations);
+  return cell;
+}
+
+Cell measure(const Rung& rung, const Subject& subject, const Question& q) {
+  switch (rung.arithmetic) {
+    case Arithmetic::in_float: return measure<float>(rung, q);
+    case Arithmetic::in_quad: return measure<Quad>(rung, q);
+    case Arithmetic::about_world_origin: {
+      const Question in_world{subject.world, q.damping, q.a, q.truth, q.options};
+      return measure<double>(rung, in_world);
+    }
+    case Arithmetic::in_double: break;
+  }
+  return measure<double>(rung, q);
+}
+
+}  // namespace
+
+std::vector<Rung> rungs(const std::vector<std::string>& names) {
+  std::vector<Rung> all;
+  int style = 0;
+  for (const OperatorRow& row : operators())
+    if (row.solves) all.push_back({std::string(row.name), &row, Arithmetic::in_double, style++});
+  const OperatorRow* lcaba = &find_operator(fast_rung);
+  all.push_back({"lcaba, float", lcaba, Arithmetic::in_float, style++});
+  all.push_back({"lcaba, quad", lcaba, Arithmetic::in_quad, style++});
+  all.push_back({world_rung, lcaba, Arithmetic::about_world_origin, style++});
+  if (names.empty()) return all;
+  std::vector<Rung> chosen;
+  for (const std::string& wanted : names) {
+    std::string accepted;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Rung& r) { return r.name == wanted; });
+    for (const Rung& r : all) accepted += (accepted.empty() ? "'" : ", '") + r.name + "'";
+    if (found == all.end()) throw ModelError("", "--op", "'" + wanted + "' is no rung", accepted);
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+const Cell* Level::find(std::string_view rung) const {
+  for (const Cell& c : cells)
+    if (c.rung == rung) return &c;
+  return nullptr;
+}
+
+std::vector<double> dampings_up_to(double largest) {
+  std::vector<double> d;
+  for (int decade = -14; std::pow(10.0, decade) <= largest * 1.000001; decade += 2) d.push_back(std::stod(bench::format("1e%d", decade)));
+  return d;
+}
+
+Table measure(const Subject& subject, const std::vector<Rung>& rungs, const Options& options) {
+  Table table{subject.name, subject.is_scene, subject.dofs(), subject.rows(), subject.away, {}};
+  const VectorX<double> a = options.random_right_side ? random_acceleration(subject.rows(), options.seed)
+                                                      : consistent_acceleration(subject.problem, options.seed);
+  std::set<std::string> too_slow;
+  for (const double d : options.dampings) {
+    const Damping<double> damping = d == own_damping ? subject.damping : Damping<double>::uniform(subject.rows(), d);
+    const Truth truth(subject.problem, damping, a);
+    Level level{d, truth.largest_eigenvalue(), truth.condition(), truth.bound(), truth.disagreement(), truth.why_not(), {}};
+    const Question question{subject.problem, damping, a, truth, options};
+    for (const Rung& rung : rungs) {
+      if (too_slow.count(rung.name)) continue;
+      const auto start = std::chrono::steady_clock::now();
+      level.cells.push_back(measure(rung, subject, question));
+      if (rung.name != default_rung && bench::seconds_since(start) > options.longest + 4 * options.budget) too_slow.insert(rung.name);
+    }
+    table.levels.push_back(std::move(level));
+  }
+  return table;
+}
+
+}  // namespace delassus::accuracy

@@ -1,0 +1,199 @@
+#include "bench/accuracy_truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/delassus.h"
+#include "algorithms/factor.h"
+#include "algorithms/kkt_residual.h"
+#include "generators/random.h"
+#include "reference/sensitivity.h"
+
+namespace delassus::accuracy {
+
+namespace {
+
+constexpr Index most_dofs = 100, most_rows = 150;  // of the definition in Quad
+
+double squared_norm(const VectorX<Quad>& x) {
+  Quad sum(0);
+  for (const Quad& e : x) sum += e * e;
+  return static_cast<double>(sum);
+}
+Quad dot(const VectorX<Quad>& x, const VectorX<Quad>& y) {
+  Quad sum(0);
+  for (Index i = 0; i < x.size(); ++i) sum += x[i] * y[i];
+  return sum;
+}
+double largest(const VectorX<Quad>& x) {
+  double most = 0;
+  for (const Quad& e : x) most = std::max(most, std::abs(static_cast<double>(e)));
+  return most;
+}
+bool all_finite(const VectorX<Quad>& x) {
+  return std::all_of(x.begin(), x.end(), [](const Quad& e) { return isfinite(e); });
+}
+double relative(double error, double to) { return error == 0 ? 0 : error / to; }
+
+VectorX<Quad> zeros(Index n) { return VectorX<Quad>::Constant(n, Quad(0)); }
+
+double largest_damping(const Damping<double>& damping) {
+  double most = 0;
+  for (const double d : damping.diagonal) most = std::max(most, d);
+  for (const auto& block : damping.blocks) most = std::max(most, block.R_inverse.trace());
+  return most;
+}
+
+/// λmax(J M⁻¹Jᵀ).
+double power_iteration(const Problem<double>& problem) {
+  const Index m = problem.structure->rows;
+  const auto op = find_operator("aba_sweep").make<double>();
+  op->analyze(problem.structure);
+  if (!op->update(problem, Damping<double>::uniform(m, 0)).ok()) return std::nan("");
+  Workspace<double> workspace(op->workspace());
+  MatrixX<double> x(random_acceleration(m, 1)), y(m, 1);
+  double eigenvalue = 0;
+  for (int k = 0; k < 50; ++k) {
+    x /= x.norm();
+    static_cast<void>(op->apply(x, y, workspace));
+    eigenvalue = y.norm();
+    if (!(eigenvalue > 0)) break;
+    x.swap(y);
+  }
+  return eigenvalue;
+}
+
+}  // namespace
+
+/// The problem in Quad, the factor of its M, and its residual.
+struct Truth::System {
+  Problem<Quad> problem;
+  Damping<Quad> damping;
+  Plan plan;
+  Factor<Quad> M;
+  KktResidual<Quad> residual;
+  double norm = 0;  // ‖A‖, an upper bound but for that of the power iteration
+
+  System(const Problem<double>& p, const Damping<double>& d) : problem(p.cast<Quad>()), damping(d.cast<Quad>()) {
+    plan = make_plan(*problem.structure, Matrix::M, Branches::all);
+    M.analyze(*problem.structure, plan);
+    const Report started = M.start(problem);
+    const Report factored = started.ok() ? M.update_undamped() : started;
+    if (!factored.ok()) throw std::runtime_error("accuracy: M is singular at degree of freedom " + std::to_string(factored.where));
+    residual.analyze(problem.structure);
+    residual.update(problem);
+    residual.update_damping(damping);
+  }
+  /// r₁ and r₂ of kkt_residual.h.
+  struct Residual { VectorX<Quad> r1, r2; };
+  [[nodiscard]] Residual evaluate(const VectorX<Quad>& nu, const VectorX<Quad>& lambda, const VectorX<Quad>& a) const {
+    Residual r{zeros(nu.size()), zeros(lambda.size())};
+    Workspace<Quad> work(residual.workspace());
+    residual.evaluate(nu.data(), lambda.data(), a.data(), r.r1.data(), r.r2.data(), work.data());
+    return r;
+  }
+  /// ν = M⁻¹Jᵀλ; returns ‖ν‖²_M.
+  double motion(const VectorX<Quad>& lambda, VectorX<Quad>& nu) const {
+    const VectorX<Quad> no_force = zeros(problem.structure->dofs());
+    VectorX<Quad> rate = zeros(lambda.size());
+    nu = no_force;
+    Workspace<Quad> work(M.workspace());
+    return static_cast<double>(M.solve(lambda.data(), no_force.data(), rate.data(), nu.data(), work.data()));
+  }
+};
+
+Truth::Truth(const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a)
+    : system_(std::make_unique<System>(problem, damping)), a_(a.cast<Quad>()) {
+  largest_ = power_iteration(problem);
+  system_->norm = largest_ + largest_damping(damping);
+  solve();
+  compare_with_definition(problem, damping, a);
+  if (known()) static_cast<void>(system_->motion(answer_.lambda, answer_.nu));
+}
+
+Truth::~Truth() = default;
+
+void Truth::solve() {
+  const Index m = a_.size();
+  MatrixX<Quad> lambda = MatrixX<Quad>::Constant(m, 1, Quad(0));
+  for (const char* name : {"lcaba_refined", "lcaba_qr"}) {
+    const auto op = find_operator(name).make<Quad>();
+    op->analyze(system_->problem.structure);
+    if (!op->update(system_->problem, system_->damping).ok()) continue;
+    Workspace<Quad> workspace(op->workspace());
+    const Report report = op->solve(MatrixX<Quad>(a_), lambda, workspace);
+    if (!(report.error_bound >= 0 && report.error_bound <= worst_bound)) continue;
+    bound_ = report.error_bound;
+    answer_.lambda = lambda;
+    return;
+  }
+  why_not_ = "no certified reference in Quad";
+}
+
+void Truth::compare_with_definition(const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a) {
+  condition_ = disagreement_ = std::nan("");
+  if (problem.structure->dofs() > most_dofs || a.size() > most_rows) return;
+  const reference::Sensitivity definition(problem, damping);
+  if (!definition.regular()) return;
+  condition_ = definition.condition();
+  const VectorX<Quad> lambda = definition.solve(a);
+  if (known()) {
+    disagreement_ = relative(largest(lambda - answer_.lambda), largest(lambda));
+  } else {  // hard rows
+    answer_.lambda = lambda;
+    why_not_.clear();
+  }
+}
+
+double Truth::motion_energy(const VectorX<Quad>& lambda, const VectorX<Quad>& nu) const {
+  VectorX<Quad> through_lambda;
+  if (nu.size() == 0) return system_->motion(lambda, through_lambda);
+  return -static_cast<double>(dot(nu, system_->evaluate(nu, zeros(lambda.size()), zeros(lambda.size())).r1));
+}
+
+Errors Truth::errors_of(const Answer& answer) const {
+  const double none = std::nan("");
+  if (!known() || !all_finite(answer.lambda) || !all_finite(answer.nu)) return {none, none, none, none};
+  const VectorX<Quad> off = answer.lambda - answer_.lambda;
+  const bool own_motion = answer.nu.size() > 0;
+  const VectorX<Quad> nu_off = own_motion ? VectorX<Quad>(answer.nu - answer_.nu) : VectorX<Quad>();
+  const double motion = std::max(0.0, motion_energy(off, nu_off));
+  VectorX<Quad> damped = zeros(off.size());
+  system_->damping.multiply(off, damped);
+  const double force = static_cast<double>(dot(off, damped));
+
+  Errors e;
+  e.lambda = relative(largest(off), largest(answer_.lambda));
+  e.motion = relative(std::sqrt(motion), std::sqrt(motion_energy(answer_.lambda, answer_.nu)));
+  e.energy = relative(std::sqrt((own_motion ? motion : 0) + force), std::sqrt(static_cast<double>(dot(answer_.lambda, a_))));
+  VectorX<Quad> nu;
+  static_cast<void>(system_->motion(answer.lambda, nu));
+  const VectorX<Quad> rest = system_->evaluate(nu, answer.lambda, a_).r2;
+  e.backward = relative(std::sqrt(squared_norm(rest)), system_->norm * std::sqrt(squared_norm(answer.lambda)) + std::sqrt(squared_norm(a_)));
+  return e;
+}
+
+VectorX<double> random_acceleration(Index rows, std::uint64_t seed) {
+  generators::Random random(seed);
+  VectorX<double> a(rows);
+  for (double& e : a) e = random.integer(-1000000, 1000000) / 1e6;
+  return a;
+}
+
+VectorX<double> consistent_acceleration(const Problem<double>& problem, std::uint64_t seed) {
+  const Structure& s = *problem.structure;
+  KktResidual<Quad> residual;
+  residual.analyze(problem.structure);
+  residual.update(problem.cast<Quad>());
+  residual.update_damping(Damping<Quad>::uniform(s.rows, Quad(0)));
+  const VectorX<double> nu = 0.1 * random_acceleration(s.dofs(), seed);
+  const VectorX<Quad> wide = nu.cast<Quad>(), none = zeros(s.rows);
+  VectorX<Quad> r1 = zeros(s.dofs()), r2 = zeros(s.rows);
+  Workspace<Quad> work(residual.workspace());
+  residual.evaluate(wide.data(), none.data(), none.data(), r1.data(), r2.data(), work.data());
+  VectorX<double> a(s.rows);
+  for (Index r = 0; r < s.rows; ++r) a[r] = -static_cast<double>(r2[r]);
+  return a;
+}
+
+}  // namespace delassus::accuracy
