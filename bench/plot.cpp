@@ -63,17 +63,17 @@ std::vector<double> spread(const std::vector<double>& wanted, double apart) {
   std::vector<double> at = wanted;
   double low = 0;
   for (const std::size_t i : order) low = (at[i] = std::max(at[i], low)) + apart;
-  double high = 1;
+  double high = 0.98;
   for (auto i = order.rbegin(); i != order.rend(); ++i) high = (at[*i] = std::min(at[*i], high)) - apart;
   return at;
 }
 
-struct Range { double low, high; };  // whole decades
+struct Range { double low, high; };  // whole decades, a tenth of one more or less
 Range decades(const std::vector<Series>& series, double std::pair<double, double>::*coordinate) {
   Range r{HUGE_VAL, 0};
   for (const Series& one : series)
     for (const auto& p : one.points) r = {std::min(r.low, p.*coordinate), std::max(r.high, p.*coordinate)};
-  return {std::pow(10, std::floor(std::log10(r.low))), std::pow(10, std::ceil(std::log10(r.high)))};
+  return {std::pow(10, std::floor(std::log10(r.low) + 0.1)), std::pow(10, std::ceil(std::log10(r.high) - 0.1))};
 }
 
 std::string labelled_script(const std::string& x_axis, const std::string& y_axis, const std::vector<Series>& series) {
