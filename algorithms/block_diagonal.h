@@ -18,15 +18,21 @@ template <class T> class BlockDiagonal {
   /// Holds R. Report: zero_damping with the first row whose damping is zero or whose block is singular.
   /// With `shift` (m, ≥ 0): holds (R⁻¹ + diag shift)⁻¹.
   [[nodiscard]] Report assign_inverse(const Damping<T>& damping, const T* shift = nullptr);
-  /// The entries of another one of the same structure, rounded to T.
-  template <class U> void round(const BlockDiagonal<U>& other) {
-    std::copy(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin());
-    std::copy(other.dense_.begin(), other.dense_.end(), dense_.begin());
+  /// The entries of another one of the same structure divided by `unit`, rounded to T.
+  template <class U> void round(const BlockDiagonal<U>& other, const U& unit) {
+    const auto rounded = [&](const U& x) { return static_cast<T>(U(x / unit)); };
+    std::transform(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin(), rounded);
+    std::transform(other.dense_.begin(), other.dense_.end(), dense_.begin(), rounded);
     has_dense_ = other.has_dense_;
     any_dense_ = other.any_dense_;
   }
 
   [[nodiscard]] const T& diagonal(Index row) const { return diagonal_[row]; }
+  /// The diagonal entry of a row, inside a block or not.
+  [[nodiscard]] const T& entry(Index row) const {
+    const Index e = constraint_of_[row], r = row - rows_[e].first;
+    return has_dense_[e] ? dense_[first_[e] + r * rows_[e].count + r] : diagonal_[row];
+  }
   /// The block of constraint e (link constraints first, then joint constraints), rows × rows, or nullptr when diagonal.
   [[nodiscard]] const T* dense(Index e) const { return has_dense_[e] ? dense_.data() + first_[e] : nullptr; }
 

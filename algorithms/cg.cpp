@@ -1,5 +1,6 @@
 #include "algorithms/cg.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/columns.h"
@@ -78,6 +79,10 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
   Report report;
   x.setZero();
   r = b;
+  if (bb == T(0) && std::any_of(a, a + m, [](const T& e) { return !(e == T(0)); })) {  // its square underflows
+    report.status = Status::not_converged;
+    return report;
+  }
   const Index limit = 10 * m + 50;
   for (int start = 0; start < max_starts; ++start) {
     precondition(r.data(), z, inner_work);
@@ -90,6 +95,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
       if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
       const T quotient = pq / inner(p, p);
       if (quotient > largest) largest = quotient;
+      if (!(quotient > T(unit_roundoff<T>) * largest)) break;    // in the null space, as far as rounding can tell
       // α = rᵀz / pᵀAp; with P in float, pᵀr: the energy cannot grow, even when p is little more than rounding
       const T alpha = (plain ? rz : T(inner(p, r))) / pq;
       x += p * alpha;

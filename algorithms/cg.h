@@ -1,5 +1,5 @@
 // cg: conjugate gradients on A = J M⁻¹ Jᵀ + R⁻¹, each product by two articulated-body sweeps.
-// cg_preconditioned: the same with z = (J M⁻¹Jᵀ + R₀⁻¹)⁻¹ r by lcaba in float, R₀ capped at g = 2¹⁰ (capped_inverse.h).
+// cg_preconditioned: the same with z = (J M⁻¹Jᵀ + R₀⁻¹)⁻¹ r by lcaba in float, R₀ capped at g = 2¹³ (capped_inverse.h).
 //
 // What     f = A⁻¹ a by Krylov iteration; a = A f directly.
 // Formula  Hestenes and Stiefel's recurrences.
@@ -59,7 +59,7 @@ template <class T, class Preconditioner> class CgWith : public Operator<T> {
   Plan plan_;
   Factor<T> factor_;
   BlockDiagonal<T> damping_;  // R⁻¹
-  Preconditioner preconditioner_{0x1p10};
+  Preconditioner preconditioner_{0x1p13};
   Report undamped_, factored_, preconditioned_;
 };
 

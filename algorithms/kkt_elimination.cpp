@@ -125,7 +125,7 @@ Report KktEliminationWith<T, policy>::do_solve_to(ConstRef<T> a, Ref<T> f, Accur
   for (Index c = 0; c < a.cols(); ++c) {
     const T* const right = a.data() + c * a.outerStride();
     T* const force = f.data() + c * f.outerStride();
-    Report report = refinement_.solve(right, force, wanted, max_steps, [this](auto... args) { correct(args...); }, workspace);
+    Report report = refinement_.solve(right, force, wanted, {max_steps}, [this](auto... args) { correct(args...); }, workspace);
     const Report consistent = check_dependent(right, force);
     if (!consistent.ok()) report = consistent;
     worst = worse(worst, report);

@@ -1,4 +1,4 @@
-// ladder: ask for an accuracy, pay only for it.
+// ladder: ask for an accuracy, pay only for it. The default inverse.
 //
 // What     f = A⁻¹ a to a wanted accuracy, by the first of these rungs whose certificate reaches it:
 //            lcaba_refined     without a refinement step where its first answer is good enough

@@ -28,7 +28,7 @@ template <class T> Report LcabaQr<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accur
   Report worst;
   for (Index c = 0; c < a.cols(); ++c)
     worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(),
-                                           wanted, max_steps, correct, workspace));
+                                           wanted, {max_steps}, correct, workspace));
   return worst;
 }
 

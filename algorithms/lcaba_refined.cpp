@@ -34,7 +34,7 @@ template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_
 template <class T>
 Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!factored_.ok()) return factored_;
-  return refinement_.solve(a, f, wanted, max_steps, [this](auto... arguments) { correct(arguments...); }, work, nu);
+  return refinement_.solve(a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
 }
 
 template <class T>

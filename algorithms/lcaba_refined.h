@@ -1,4 +1,4 @@
-// lcaba_refined: lcaba with adaptive refinement on the KKT residual, and a certificate. The default inverse.
+// lcaba_refined: lcaba with adaptive refinement on the KKT residual, and a certificate. The first rung of the default (ladder.h).
 //
 // What     f = Λ_R a to full accuracy wherever eps · R λmax(Λ⁻¹) < 1, with a rigorous error bound.
 // Formula  (K) of refinement.h by the inversion lemma:  M_R δν = r₁ + JᵀR r₂,  δλ = R (r₂ − J δν).

@@ -23,7 +23,7 @@ template <class T, class F> Report ProximalWith<T, F>::do_solve_to(ConstRef<T> a
   Report worst;
   for (Index c = 0; c < a.cols(); ++c)
     worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), wanted,
-                                           max_steps, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace));
+                                           {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace));
   return worst;
 }
 

@@ -60,7 +60,9 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   now.size = larger(relative(now.force, largest), now.energy);
   const double rho = larger(larger(contraction(now.motion, before.motion), contraction(now.force, before.force)),
                             contraction(now.energy, before.energy));
-  now.expected = rho * larger(relative(at_stake, largest), now.size <= 4 * unit_roundoff<T> ? 0 : now.size);
+  const double gained = larger(relative(at_stake, largest), now.size <= 4 * unit_roundoff<T> ? 0 : now.size);
+  now.expected = gained == 0 ? 0 : gained * rho / (1 - rho);  // of this and all further corrections
+  now.patient = now.size == 0 ? 0 : now.size * larger(1, rho / (1 - rho));
   return now;
 }
 

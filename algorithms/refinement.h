@@ -7,8 +7,9 @@
 // How      ν and λ are carried as Wide<T>. A correction measures the error before it: in the energy norm
 //            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to λᵀa,
 //          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
-//          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|.
-//          Steps end when that is below eps.
+//          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
+//          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that
+//          is below eps; those of a patient correction, which is fast in most directions and slow in some, when it is itself.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
@@ -44,12 +45,16 @@ template <class T> class Refinement {
   /// The factor of M, every joint active.
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
+  struct Steps {
+    int most;
+    bool patient = false;
+  };
   /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
   /// accuracy was not reached, with the iterate it came to; not_finite.
   template <class Correct>
-  Report solve(const T* a, T* f, Accuracy wanted, int most_steps, const Correct& correct, T* work, T* nu = nullptr) const;
+  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr) const;
 
   [[nodiscard]] Index workspace(Index of_correction) const;
   [[nodiscard]] Index bytes() const;
@@ -59,6 +64,7 @@ template <class T> class Refinement {
   struct Progress {
     double size = 1;      // of the last correction, relative: the error before it
     double expected = 1;  // of the next one: the error now
+    double patient = 1;   // the same if corrections are slow in directions that this one does not show
     double energy = 1, motion = 0, force = 0;  // of the last one: in the energy norm, max|δν|, max|δλ|
   };
   Progress advance(Buffers& b, const Progress& before) const;
@@ -100,19 +106,19 @@ template <class T> struct Refinement<T>::Buffers {
 
 template <class T>
 template <class Correct>
-Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, int most_steps, const Correct& correct, T* work, T* nu) const {
+Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu) const {
   Buffers b(*structure_, a, work);
   correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
   Progress now = advance(b, {});  // the first evaluation is the correction from zero
-  now.expected = now.energy = 1;
+  now.expected = now.patient = now.energy = 1;
 
   Report report;
   while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
     residual_.evaluate(b.nu, b.lambda, b.a, b.r1, b.r2, b.rest);
-    const bool done = now.expected <= unit_roundoff<T>;
+    const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
     if (done || wanted.error > 0) report.error_bound = certify(b);
     if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
-    if (report.iterations == most_steps) {
+    if (report.iterations == steps.most) {
       report.error_bound = certify(b);
       report.status = Status::not_converged;
       break;

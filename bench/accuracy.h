@@ -15,7 +15,7 @@
 namespace delassus::accuracy {
 
 inline constexpr const char* fast_rung = "lcaba";              ///< what costs are relative to
-inline constexpr const char* default_rung = "lcaba_refined";   ///< what the claims are about
+inline constexpr const char* default_rung = "ladder";   ///< what the claims are about
 inline constexpr const char* world_rung = "lcaba, world";
 
 inline constexpr double own_damping = -1;                      ///< a damping: the subject's own

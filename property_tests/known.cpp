@@ -54,6 +54,31 @@ const char* why_no_bound(Function f, const Case& c) {
 
 double condition(const Case& c) { return sensitivity(c)->condition(); }
 
+Quad condition_of_M(const Case& c) {
+  auto [at, is_new] = c.known->answers.try_emplace("condition of M");
+  if (is_new) {
+    const MatrixX<Quad>& M = sensitivity(c)->matrices().M;
+    const auto magnitude = [](MatrixX<Quad> x) {
+      for (Index k = 0; k < x.size(); ++k) x.data()[k] = abs(x.data()[k]);
+      return x;
+    };
+    const MatrixX<Quad> product = reference::product<Quad>(magnitude(reference::PivotedLdlt<Quad>(M).inverse()), magnitude(M));
+    Quad largest(0);
+    for (Index r = 0; r < M.rows(); ++r) largest = std::max(largest, Quad(product.row(r).sum()));
+    at->second = MatrixX<Quad>::Constant(1, 1, largest);
+  }
+  return (*at->second)(0, 0);
+}
+
+double stiffness(const Case& c) {
+  if (!damped(c)) return 0;
+  const reference::Dense<Quad>& d = sensitivity(c)->matrices();
+  const MatrixX<Quad> R = reference::PivotedLdlt<Quad>(d.R_inverse).inverse();
+  double worst = 0;
+  for (Index r = 0; r < c.rows(); ++r) worst = std::max(worst, static_cast<double>(Quad(R(r, r) * d.A0(r, r))));
+  return worst;
+}
+
 double product_condition(const Case& c) {
   const VectorX<double> ones = VectorX<double>::Ones(c.rows());
   const MatrixX<Quad>& A = quad_definition(Function::apply, c);

@@ -43,6 +43,10 @@ struct Known {
 [[nodiscard]] const char* why_no_bound(Function f, const Case& c);
 /// κ_∞(A). Needs why_no_bound(solve) == nullptr.
 [[nodiscard]] double condition(const Case& c);
+/// ‖|M⁻¹||M|‖: how many times larger than in the entries of M an error of M⁻¹ may be. Needs why_no_bound(apply) == nullptr.
+[[nodiscard]] Quad condition_of_M(const Case& c);
+/// max R_rr (J M⁻¹Jᵀ)_rr: how much larger than its answer the terms of the inversion lemma are. 0 where R⁻¹ is singular.
+[[nodiscard]] double stiffness(const Case& c);
 /// ‖apply_sensitivity‖ / ‖A‖: how much less accurate a product A f is than one by the explicit matrix. Same need.
 [[nodiscard]] double product_condition(const Case& c);
 /// A is regular, decided in rational numbers.

@@ -24,23 +24,21 @@ bool float_promises_nothing(Function f, const OperatorRow& op, const Case& c) {
   return !(reach < largest);
 }
 
-/// ‖|M⁻¹||M|‖: how many times larger than in the entries of M an error of M⁻¹ may be. Needs why_no_bound(apply) == nullptr.
-Quad condition_of_M(const Case& c) {
-  auto [at, is_new] = c.known->answers.try_emplace("condition of M");
-  if (is_new) {
-    const MatrixX<Quad>& M = c.known->sensitivity->matrices().M;
-    const MatrixX<Quad> product = times<Quad>(magnitude(reference::PivotedLdlt<Quad>(M).inverse()), magnitude(M));
-    Quad largest(0);
-    for (Index r = 0; r < M.rows(); ++r) largest = std::max(largest, Quad(product.row(r).sum()));
-    at->second = MatrixX<Quad>::Constant(1, 1, largest);
+/// Entries of the diagonal of A can be squared, twice, in float.
+bool within_float(const Case& c) {
+  const MatrixX<Quad>& A = definition<double>(apply, c);
+  for (Index r = 0; r < A.rows(); ++r) {
+    const double size = static_cast<double>(A(r, r));
+    if (size != 0 && !(size > 0x1p-30 && size < 0x1p30)) return false;
   }
-  return (*at->second)(0, 0);
+  return true;
 }
 
 template <Function F> const char* why_not_float(const OperatorRow& op, const Case& c) {
   if (!std::get<Maker<float>>(op.makers)) return "is not served in float";
   if (const char* reason = why_not<double>(F, op, c)) return reason;
   if (!(Quad(pass_below * unit_roundoff<float>) * condition_of_M(c) < Quad(1))) return "M may be singular within the roundoff of float";
+  if (!within_float(c)) return "squares of its entries leave the range of float";
   if (F == solve && condition(c) > 0x1p12) return "κ(A) > 2¹², the square root of 1/eps of float";
   return float_promises_nothing(F, op, c) ? "promises no digit: 30 eps(float) · bound reaches the answer" : nullptr;
 }
