@@ -31,7 +31,7 @@ template <class X> double magnitude(const X& x) { return std::abs(static_cast<do
 double larger(double a, double b) { return b <= a ? a : b; }
 
 // By how much a correction is smaller than the one before it, at most 1.
-double contraction(double now, double before) { return now < before ? now / before : 1; }
+double contraction(double now, double before) { return now < before ? now / before : now == 0 ? 0 : 1; }
 
 double relative(double x, double to) { return x == 0 ? 0 : x / to; }
 }  // namespace

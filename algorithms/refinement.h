@@ -9,7 +9,8 @@
 //          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
 //          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
 //          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that
-//          is below eps; those of a patient correction, which is fast in most directions and slow in some, when it is itself.
+//          is below eps; those of a patient correction, which is fast in most directions and slow in some, when it is itself. Two
+//          corrections in a row as large as half the solution are divergence: not_converged.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
@@ -112,20 +113,23 @@ Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, cons
   Progress now = advance(b, {});  // the first evaluation is the correction from zero
   now.expected = now.patient = now.energy = 1;
 
+  Progress before = now;
   Report report;
   while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
     residual_.evaluate(b.nu, b.lambda, b.a, b.r1, b.r2, b.rest);
     const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
     if (done || wanted.error > 0) report.error_bound = certify(b);
     if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
-    if (report.iterations == steps.most) {
+    const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
+    if (report.iterations == steps.most || diverges) {
       report.error_bound = certify(b);
       report.status = Status::not_converged;
       break;
     }
     correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
     ++report.iterations;
-    now = advance(b, now);
+    before = now;
+    now = advance(b, before);
     report.error_estimate = now.size;
   }
   if (!std::isfinite(now.size)) report.status = Status::not_finite;
