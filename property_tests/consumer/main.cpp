@@ -18,12 +18,12 @@ int main() {
   model.constraints.push_back({.name = "tip", .kind = Constraint::Kind::point, .a = {1, {.translation = {0, 0, -1}}}});
 
   const Problem<double> problem = kinematics<double>(model, VectorX<double>{{0.3, 0.4}});
-  const auto lambda_R = find_operator("lcaba").make<double>();
+  const auto lambda_R = find_operator("ladder").make<double>();
   lambda_R->analyze(problem.structure);                                               // once
   Report report = lambda_R->update(problem, Damping<double>::uniform(3, 1e-3));       // at q
   Workspace<double> workspace(lambda_R->workspace());
   VectorX<double> a{{0.0, 0.0, 9.81}}, f(3);
-  report = lambda_R->solve(a, f, workspace);                                          // f = (R⁻¹ + J M⁻¹ Jᵀ)⁻¹ a
+  report = lambda_R->solve(a, f, Accuracy{1e-8}, workspace);                         // f = (R⁻¹ + J M⁻¹ Jᵀ)⁻¹ a, as accurate as asked
   std::printf("%s: f = %.6f %.6f %.6f N\n", name(report.status).data(), f[0], f[1], f[2]);
   return report.ok() ? 0 : 1;
 }
