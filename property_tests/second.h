@@ -78,7 +78,9 @@ template <class T> class Eliminated {
     const Dense<T> both = Route<T>(op, p, d)(f, columns);
     Y_ = both.leftCols(x.cols());
     Z_ = both.rightCols(count());
-    W_inverse_ = reference::PivotedLdlt<Wide<T>>(picked(Z_)).inverse();
+    const reference::PivotedLdlt<Wide<T>> W(picked(Z_));
+    regular_ = W.regular();
+    W_inverse_ = ScalarTraits<T>::exact || regular_ ? W.inverse() : Dense<T>(Dense<T>::Constant(count(), count(), Wide<T>(0)));
     if constexpr (!ScalarTraits<T>::exact) bound_ = error_bound(f, op, c, columns);
   }
 
@@ -98,7 +100,7 @@ template <class T> class Eliminated {
     const MatrixX<Quad> change = times<Quad>(magnitude(W_inverse_), picked(MatrixX<Quad>(bound_.rightCols(count()))));
     Quad largest(0);
     for (Index r = 0; r < change.rows(); ++r) largest = std::max(largest, Quad(change.row(r).sum()));
-    return Quad(2 * pass_below * unit_roundoff<double>) * largest < Quad(1);
+    return regular_ && Quad(2 * pass_below * unit_roundoff<double>) * largest < Quad(1);
   }
 
  private:
@@ -111,6 +113,7 @@ template <class T> class Eliminated {
   [[nodiscard]] Dense<T> force() const { return times<Wide<T>>(W_inverse_, picked(Y_)); }
 
   std::vector<Index> out_;
+  bool regular_ = true;
   Dense<T> Y_, Z_, W_inverse_;
   MatrixX<Quad> bound_;
 };
