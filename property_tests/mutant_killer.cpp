@@ -1,15 +1,34 @@
-// What kills mutants (mutate.py): every law on small pinned problems, smallest first, until one fails. It also holds what
-// no law looks at: the fill of a plan, and that a lost pivot is named in every phase until there are better numbers.
+// What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
+// the fill of a plan, and that a lost pivot is named in every phase until there are better numbers.
 //
-// Exit code 0: everything holds; 1: something does not, and it is printed.
+//   mutant_killer [--mutants N] OPERATOR …
+//
+// runs the program unchanged, then mutants 1 … N that are compiled in (mutant_batch.py), each in a process of its own that
+// inherits the references' answers. For each a line «number outcome reason». What killed last is tried first.
+// Exit code 1: the unchanged one does not pass.
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <functional>
 #include <iostream>
+#include <sstream>
+#include <string>
 
 #include "algorithms/elimination.h"
 #include "generators/build.h"
 #include "property_tests/allocations.h"
 #include "property_tests/laws.h"
 #include "property_tests/summary.h"
+
+/// Which of the mutants compiled in runs; 0: none.
+int delassus_mutant = 0;
 
 namespace {
 
@@ -27,36 +46,28 @@ constexpr Pinned problems[] = {
     {"no_bodies", 0, 1},   {"generic", 8, 1},      {"contacts", 1, 1},      {"star", 4, 2},        {"redundant", 2, 1},
     {"comb", 6, 1},        {"mass_ratio", 4, 1},   {"near_singular", 3, 1}, {"mixed_damping", 10, 1}};
 
-/// Prints and returns whether a number is larger than what was measured when this was written.
-bool exceeds(const char* what, Index got, Index most) {
-  if (got > most) std::cout << what << ": " << got << " instead of " << most << '\n';
-  return got > most;
-}
+/// What does not hold, in words; empty: everything does.
+using Words = std::string;
 
-/// What the elimination order costs: blocks of the plan, pairs of its steps, runs, active steps.
-bool dearer_order() {
+using Check = std::function<Words()>;
+
+/// What the elimination order costs, blocks of the plan, pairs of its steps, runs, active steps: not more than was measured
+/// when this was written.
+Words dearer_order() {
   constexpr struct {
     const char* family;
-    Index n, blocks, pairs, runs, active;
-  } expected[] = {{"lattice", 16, 42, 44, 1, 16}, {"comb", 20, 10, 0, 20, 20}, {"random_tree", 24, 0, 0, 7, 10}, {"ring", 12, 17, 20, 2, 12},
-                  {"humanoid", 26, 12, 11, 3, 26},   {"generic", 13, 33, 43, 9, 13}};
+    Index n, most[4];
+  } expected[] = {{"lattice", 16, {42, 44, 1, 16}}, {"comb", 20, {10, 0, 20, 20}}, {"random_tree", 24, {0, 0, 7, 10}},
+                  {"ring", 12, {17, 20, 2, 12}},    {"humanoid", 26, {12, 11, 3, 26}}, {"generic", 13, {33, 43, 9, 13}}};
   for (const auto& e : expected) {
     const auto s = generators::build(generators::find_family(e.family).make(e.n, 1)).problem.structure;
     const Plan plan = make_plan(*s, Matrix::M_R);
-    const bool dearer[] = {exceeds("blocks", plan.blocks, e.blocks), exceeds("pairs", static_cast<Index>(plan.pairs.size()), e.pairs),
-                           exceeds("runs", static_cast<Index>(plan.runs.size()), e.runs), exceeds("active steps", plan.active(), e.active)};
-    if (dearer[0] || dearer[1] || dearer[2] || dearer[3]) {
-      std::cout << e.family << '\n';
-      return true;
-    }
+    const Index got[] = {plan.blocks, static_cast<Index>(plan.pairs.size()), static_cast<Index>(plan.runs.size()), plan.active()};
+    for (int k = 0; k < 4; ++k)
+      if (got[k] > e.most[k])
+        return Words("blocks, pairs, runs, active steps of ") + e.family + ": number " + std::to_string(k) + " is " + std::to_string(got[k]);
   }
-  return false;
-}
-
-bool unexpected(std::string_view op, const char* when, const Report& r, Status expected, Index where) {
-  if (r.status == expected && (expected == Status::ok || r.where == where)) return false;
-  std::cout << op << ", " << when << ": " << name(r.status) << " at " << r.where << '\n';
-  return true;
+  return {};
 }
 
 /// What apply or solve says for one vector.
@@ -69,7 +80,8 @@ Report answered(const OperatorRow& row, const Operator<double>& op) {
 
 /// A massless tip makes M singular: every phase names the degree of freedom of its joint, until there are better numbers.
 /// `held`: whether the tip carries the constraint, so that its step is active. A zero damping is forgotten the same way.
-bool lost_pivot_forgotten(bool held) {
+Words lost_pivot_kept(const OperatorRow& row, bool held) {
+  if (held && row.name == "lcaba") return {};  // M + JᵀRJ is regular
   generators::Spec spec = generators::find_family("chain").make(3, 1);
   spec.links.resize(1);
   spec.links[0].bodies = {held ? 2 : 0};
@@ -79,42 +91,120 @@ bool lost_pivot_forgotten(bool held) {
   bad.H.back().setZero();
   std::fill(bad.armature.begin(), bad.armature.end(), 0.0);
   const auto hard = Damping<double>::uniform(good.structure->rows, 0);
-  for (const char* op_name : {"aba_sweep", "lcaba", "lcaba_refined"}) {
-    if (held && std::string_view(op_name) == "lcaba") continue;  // M + JᵀRJ is regular
-    const OperatorRow& row = find_operator(op_name);
-    const auto op = row.make<double>();
-    op->analyze(good.structure);
-    if (unexpected(op_name, "singular M", op->update(bad, damping), Status::lost_pivot, tip) ||
-        unexpected(op_name, "its answer", answered(row, *op), Status::lost_pivot, tip) ||
-        unexpected(op_name, "its new damping", op->update_damping(damping), Status::lost_pivot, tip) ||
-        unexpected(op_name, "its answer then", answered(row, *op), Status::lost_pivot, tip) ||
-        unexpected(op_name, "regular M", op->update(good, damping), Status::ok, 0) ||
-        unexpected(op_name, "hard rows", op->update_damping(hard), row.solves ? Status::zero_damping : Status::ok, 0) ||
-        unexpected(op_name, "damped again", op->update_damping(damping), Status::ok, 0) ||
-        unexpected(op_name, "its last answer", answered(row, *op), Status::ok, 0))
-      return true;
-  }
-  return false;
+  const auto op = row.make<double>();
+  op->analyze(good.structure);
+  Words words;
+  const auto expect = [&](const char* when, const Report& r, Status status, Index where) {
+    if (!words.empty() || (r.status == status && (status == Status::ok || r.where == where))) return;
+    words = Words(row.name) + ", " + when + ": " + Words(name(r.status)) + " at " + std::to_string(r.where);
+  };
+  expect("singular M", op->update(bad, damping), Status::lost_pivot, tip);
+  expect("its answer", answered(row, *op), Status::lost_pivot, tip);
+  expect("its new damping", op->update_damping(damping), Status::lost_pivot, tip);
+  expect("its answer then", answered(row, *op), Status::lost_pivot, tip);
+  expect("regular M", op->update(good, damping), Status::ok, 0);
+  expect("hard rows", op->update_damping(hard), row.zero_damping || !row.solves ? Status::ok : Status::zero_damping, 0);
+  expect("damped again", op->update_damping(damping), Status::ok, 0);
+  expect("its last answer", answered(row, *op), Status::ok, 0);
+  return words;
 }
 
-bool law_broken() {
-  for (const Pinned& pinned : problems) {
-    const laws::Case c = laws::make_case(pinned.family, pinned.n, pinned.seed);
-    for (const char* op_name : {"aba_sweep", "lcaba", "lcaba_refined", "cg", "dense_cholesky"}) {
-      for (const laws::LawRow& law : laws::laws()) {
-        const laws::Outcome o = laws::check(law, find_operator(op_name), c);
-        if (!o.failed()) continue;
-        laws::print(std::cout, o);
-        return true;
-      }
-    }
+Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Case& c) {
+  const laws::Outcome o = laws::check(law, op, c);
+  if (!o.failed()) return {};
+  std::ostringstream words;
+  laws::print(words, o);
+  return words.str();
+}
+
+/// Exact laws of every problem first: they need no bound and know no excuse.
+std::vector<Check> checks(const std::vector<std::string_view>& names) {
+  static std::vector<laws::Case> cases;
+  for (const Pinned& pinned : problems) cases.push_back(laws::make_case(pinned.family, pinned.n, pinned.seed));
+  std::vector<Check> all, rest = {dearer_order};
+  for (const laws::Case& c : cases)
+    for (const std::string_view op_name : names)
+      for (const laws::LawRow& law : laws::laws())
+        (law.name.starts_with("exact ") ? all : rest).push_back([&law, &c, op_name] { return law_broken(law, find_operator(op_name), c); });
+  for (const std::string_view op_name : names)
+    for (const bool held : {true, false})
+      rest.push_back([op_name, held] { return lost_pivot_kept(find_operator(op_name), held); });
+  all.insert(all.end(), rest.begin(), rest.end());
+  return all;
+}
+
+/// What a child leaves behind.
+struct Last {
+  std::size_t check;
+  char words[200];
+};
+
+/// A check may take one second of processor time where a mutant runs; unchanged, none takes a tenth of it.
+bool all_hold(const std::vector<Check>& all, Last& last) {
+  const itimerval second{{0, 0}, {1, 0}};
+  for (last.check = 0; last.check < all.size(); ++last.check) {
+    if (delassus_mutant != 0) setitimer(ITIMER_PROF, &second, nullptr);
+    const Words words = all[last.check]();
+    if (words.empty()) continue;
+    std::strncpy(last.words, words.c_str(), sizeof(last.words) - 1);
+    return false;
   }
-  return false;
+  return true;
+}
+
+double cpu_seconds(int who) {
+  rusage used{};
+  getrusage(who, &used);
+  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+/// Runs a mutant in a child; its wait status.
+int run_child(int mutant, const std::vector<Check>& all, Last& last) {
+  last = {};
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(600);
+    delassus_mutant = mutant;
+    _exit(all_hold(all, last) ? EXIT_SUCCESS : EXIT_FAILURE);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+const char* outcome(int status) {
+  if (WIFEXITED(status)) return WEXITSTATUS(status) == 0 ? "survived" : WEXITSTATUS(status) == 1 ? "failed" : "crashed";
+  return WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM ? "time" : "crashed";
+}
+
+int kill_mutants(int count, std::vector<Check> all) {
+  Last& last = *static_cast<Last*>(mmap(nullptr, sizeof(Last), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  const int usual = run_child(0, all, last);
+  const double unchanged = cpu_seconds(RUSAGE_CHILDREN);
+  std::cout << "0 " << outcome(usual) << ' ' << unchanged << " s, and once " << cpu_seconds(RUSAGE_SELF) << " s" << std::endl;
+  for (int mutant = 1; mutant <= count; ++mutant) {
+    const int status = run_child(mutant, all, last);
+    if (last.check < all.size()) std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(last.check), all.begin() + static_cast<std::ptrdiff_t>(last.check) + 1);
+    std::replace(std::begin(last.words), std::end(last.words), '\n', ' ');
+    std::cout << mutant << ' ' << outcome(status) << ' ' << last.words << std::endl;
+  }
+  return EXIT_SUCCESS;
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  int count = 0;
+  std::vector<std::string_view> names;
+  for (int k = 1; k < argc; ++k)
+    if (std::string_view(argv[k]) == "--mutants" && k + 1 < argc) count = std::atoi(argv[++k]);
+    else names.emplace_back(argv[k]);
   laws::count_allocations();
-  return dearer_order() || lost_pivot_forgotten(true) || lost_pivot_forgotten(false) || law_broken() ? EXIT_FAILURE : EXIT_SUCCESS;
+  const std::vector<Check> all = checks(names);
+  Last last{};
+  if (!all_hold(all, last)) {
+    std::cout << "0 failed " << last.words << std::endl;
+    return EXIT_FAILURE;
+  }
+  return kill_mutants(count, all);
 }
