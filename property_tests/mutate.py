@@ -42,15 +42,18 @@ FILES = {
 
 
 def read_equivalent(path):
-    """{(file, before, after): reason}; an entry is `file`, `- before`, `+ after`, `= reason`."""
-    entries, entry = {}, {}
+    """{(file, before, after): reason}; an entry is `file`, then `- before` and `+ after` lines, then `= reason` for all of them."""
+    entries, pairs, name, before = {}, [], None, None
     for line in open(path, encoding="utf-8").read().split("\n") if os.path.exists(path) else []:
-        if line.startswith(("- ", "+ ", "= ")):
-            entry[line[0]] = line[2:].strip()
+        if line.startswith("- "):
+            before = line[2:].strip()
+        elif line.startswith("+ "):
+            pairs.append((name, before, line[2:].strip()))
+        elif line.startswith("= "):
+            entries.update({pair: line[2:].strip() for pair in pairs})
+            pairs = []
         elif line and not line.startswith("#"):
-            entry["file"] = line.strip()
-        if line.startswith("= "):
-            entries[entry["file"], entry["-"], entry["+"]] = entry["="]
+            name = line.strip()
     return entries
 
 
