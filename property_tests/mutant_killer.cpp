@@ -1,5 +1,5 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
-// every number of a plan, and that a lost pivot is named in every phase until there are better numbers.
+// every number of a plan, refusals of misuse, and that a lost pivot is named in every phase until there are better numbers.
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -24,6 +24,7 @@
 #include "generators/build.h"
 #include "property_tests/allocations.h"
 #include "property_tests/laws.h"
+#include "property_tests/misuse.h"
 #include "property_tests/plan_model.h"
 #include "property_tests/summary.h"
 
@@ -40,11 +41,11 @@ struct Pinned {
   std::uint64_t seed;
 };
 constexpr Pinned problems[] = {
-    {"chain", 2, 1},       {"generic", 2, 1},      {"generic", 5, 1},       {"generic", 5, 2},     {"random_tree", 5, 1},
-    {"lattice", 4, 1},     {"massless", 5, 1},     {"block_damping", 3, 1}, {"four_bar", 4, 1},    {"several_trees", 4, 1},
-    {"joint_friction", 4, 1}, {"hard", 3, 1},      {"partly_hard", 3, 1},   {"hard_redundant", 2, 1}, {"no_rows", 4, 1},
-    {"no_bodies", 0, 1},   {"generic", 8, 1},      {"contacts", 1, 1},      {"star", 4, 2},        {"redundant", 2, 1},
-    {"comb", 6, 1},        {"mass_ratio", 4, 1},   {"near_singular", 3, 1}, {"mixed_damping", 10, 1}};
+    {"generic", 2, 1},     {"chain", 2, 1},       {"generic", 5, 1},        {"several_trees", 4, 1}, {"random_tree", 5, 1}, {"massless", 5, 1},
+    {"four_bar", 4, 1},    {"redundant", 2, 1},   {"joint_friction", 4, 1}, {"block_damping", 3, 1}, {"hard", 3, 1},        {"partly_hard", 3, 1},
+    {"hard_redundant", 2, 1}, {"no_rows", 4, 1},  {"no_bodies", 0, 1},      {"contacts", 1, 1},      {"star", 4, 2},        {"comb", 6, 1},
+    {"mass_ratio", 4, 1},  {"near_singular", 3, 1}, {"generic", 8, 1}};
+/// Structures whose plans are looked at.
 constexpr Pinned plans[] = {{"generic", 5, 1}, {"generic", 13, 1},     {"lattice", 16, 1},      {"comb", 20, 1},    {"random_tree", 24, 1}, {"ring", 12, 1},
                             {"humanoid", 26, 1}, {"several_trees", 4, 1}, {"no_rows", 4, 1}, {"no_bodies", 0, 1}};
 
@@ -115,6 +116,7 @@ std::vector<Check> checks(const std::vector<std::string_view>& names) {
     for (const std::string_view op_name : names)
       for (const laws::LawRow& law : laws::laws())
         (law.name.starts_with("exact ") ? all : rest).push_back([&law, &c, op_name] { return law_broken(law, find_operator(op_name), c); });
+  for (const std::string_view op_name : names) rest.push_back([op_name] { return misuse_accepted(find_operator(op_name)); });
   for (const std::string_view op_name : names)
     for (const bool held : {true, false})
       rest.push_back([op_name, held] { return lost_pivot_kept(find_operator(op_name), held); });

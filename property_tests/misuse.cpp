@@ -1,0 +1,127 @@
+#include "property_tests/misuse.h"
+
+#include <functional>
+#include <stdexcept>
+
+namespace delassus {
+namespace {
+
+// Two bodies; rows 0–2 link them, 3–4 belong to a joint, 5 to one body.
+std::shared_ptr<const Structure> structure() {
+  Structure s;
+  s.add_body(ground, 6);
+  s.add_body(0, 2);
+  s.add_link_constraint(3, {0, 1});
+  s.add_joint_constraint(2, 1);
+  s.add_link_constraint(1, {1});
+  return std::make_shared<const Structure>(std::move(s));
+}
+
+Problem<double> problem_on(std::shared_ptr<const Structure> s) {
+  Problem<double> p(std::move(s));
+  for (auto& H : p.H) H.setIdentity();
+  for (std::size_t c = 0; c < p.S.size(); ++c) p.S[c][static_cast<Index>(c % 6)] = 1;
+  for (std::size_t r = 0; r < p.K.size(); ++r) p.K[r][static_cast<Index>(r % 6)] = 1;
+  p.joint_K = {1, 0, 0, 1};
+  return p;
+}
+
+struct Square {
+  Index row, size;
+};
+
+Damping<double> damped(std::initializer_list<Square> squares) {
+  Damping<double> d = Damping<double>::uniform(6, 1);
+  for (const Square& b : squares) d.blocks.push_back({b.row, MatrixX<double>::Identity(b.size, b.size)});
+  return d;
+}
+
+bool throws(const std::function<Report()>& use) {
+  try {
+    static_cast<void>(use());
+  } catch (const std::logic_error&) {
+    return true;
+  }
+  return false;
+}
+
+std::string wrong_sizes(Operator<double>& op, const Problem<double>& problem) {
+  const Damping<double> proper[] = {damped({}), damped({{0, 3}}), damped({{1, 2}}), damped({{0, 2}, {2, 1}}), damped({{3, 2}}),
+                                    damped({{3, 1}, {4, 1}}), damped({{5, 1}}), damped({{0, 3}, {3, 2}, {5, 1}}), damped({{1, 0}})};
+  for (const auto& d : proper)
+    if (throws([&] { return op.update(problem, d); }) || throws([&] { return op.update_damping(d); }))
+      return "refuses a damping with " + std::to_string(d.blocks.size()) + " blocks, the first at " + std::to_string(d.blocks.empty() ? -1 : d.blocks[0].row);
+  Damping<double> wrong[] = {Damping<double>::uniform(5, 1), Damping<double>::uniform(7, 1), damped({{0, 4}}), damped({{2, 2}}),
+                             damped({{4, 2}}), damped({{-1, 2}}), damped({{5, 2}}), damped({{0, 2}, {1, 2}}), damped({{3, 1}, {0, 1}}),
+                             damped({{0, 1}, {2, 2}}), damped({}), damped({})};
+  std::end(wrong)[-2].blocks.push_back({0, MatrixX<double>::Identity(2, 3)});
+  std::end(wrong)[-1].blocks.push_back({0, MatrixX<double>::Identity(3, 2)});
+  for (const auto& d : wrong)
+    if (!throws([&] { return op.update(problem, d); }) || !throws([&] { return op.update_damping(d); }))
+      return "takes damping " + std::to_string(&d - wrong) + " of the wrong ones";
+  return {};
+}
+
+std::string wrong_phase(const OperatorRow& row, const Problem<double>& problem) {
+  const auto op = row.make<double>();
+  const MatrixX<double> x = MatrixX<double>::Ones(6, 2);
+  MatrixX<double> y = x;
+  Workspace<double> w(10000);
+  const auto use = [&] { return row.applies ? op->apply(x, y, w) : op->solve(x, y, w); };
+  if (!throws([&] { op->analyze(nullptr); return Report{}; })) return "analyzes nothing";
+  if (!throws([&] { return op->update(problem, damped({})); })) return "updates before analyze";
+  if (!throws([&] { return static_cast<void>(op->workspace()), Report{}; }) || !throws([&] { return static_cast<void>(op->bytes()), Report{}; }))
+    return "knows its memory before analyze";
+  op->analyze(problem.structure);
+  if (!throws([&] { return op->update_damping(damped({})); })) return "updates the damping before the numbers";
+  if (!throws(use)) return "answers before update";
+  if (!throws([&] { return op->update(problem_on(structure()), damped({})); })) return "takes another structure";
+  Problem<double> shorter = problem;
+  shorter.K.pop_back();
+  if (!throws([&] { return op->update(shorter, damped({})); })) return "takes a problem that lacks a row";
+  static_cast<void>(op->update(problem, damped({})));
+  if (throws(use)) return "does not answer";
+  op->analyze(problem.structure);
+  if (!throws(use)) return "answers after analyze alone";
+  return {};
+}
+
+std::string wrong_shape(const OperatorRow& row, Operator<double>& op) {
+  const auto refuses = [&](Index rows, Index columns, Index out_rows, Index out_columns, Index scalars) {
+    const MatrixX<double> x = MatrixX<double>::Ones(rows, columns);
+    MatrixX<double> y = MatrixX<double>::Ones(out_rows, out_columns);
+    Workspace<double> w(scalars);
+    const bool applied = !row.applies || throws([&] { return op.apply(x, y, w); });
+    const bool solved = !row.solves || throws([&] { return op.solve(x, y, w); });
+    return applied && solved && (!row.solves || throws([&] { return op.solve(x, y, Accuracy::full(), w); }));
+  };
+  const Index enough = op.workspace(2);
+  if (refuses(6, 2, 6, 2, enough) || refuses(6, 0, 6, 0, enough)) return "refuses what fits";
+  if (!refuses(5, 2, 6, 2, enough) || !refuses(6, 2, 5, 2, enough) || !refuses(7, 2, 7, 2, enough)) return "takes other rows";
+  if (!refuses(6, 2, 6, 1, enough) || !refuses(6, 1, 6, 2, enough)) return "takes other columns";
+  if (enough > 0 && !refuses(6, 2, 6, 2, enough - 1)) return "takes a workspace too small";
+  MatrixX<double> x = MatrixX<double>::Ones(6, 2);
+  Workspace<double> w(enough);
+  if (row.applies && !throws([&] { return op.apply(x, x, w); })) return "applies in place";
+  if (row.solves && !throws([&] { return op.solve(x, x, w); })) return "solves in place";
+  MatrixX<double> y = x;
+  for (const double error : {-1.0, std::numeric_limits<double>::quiet_NaN()})
+    if (row.solves && !throws([&] { return op.solve(x, y, Accuracy{error}, w); })) return "wants an error that is no number";
+  if (row.solves && throws([&] { return op.solve(x, y, Accuracy::fastest(), w); })) return "refuses to be fast";
+  return {};
+}
+
+}  // namespace
+
+std::string misuse_accepted(const OperatorRow& row) {
+  const Problem<double> problem = problem_on(structure());
+  const auto op = row.make<double>();
+  op->analyze(problem.structure);
+  std::string words = wrong_sizes(*op, problem);
+  if (words.empty()) words = wrong_phase(row, problem);
+  static_cast<void>(op->update(problem, damped({})));
+  if (words.empty()) words = wrong_shape(row, *op);
+  return words.empty() ? words : std::string(row.name) + " " + words;
+}
+
+}  // namespace delassus
