@@ -72,6 +72,31 @@ Spec stiff_redundant(Index n, std::uint64_t seed) { return damped("redundant", "
 Spec stiff_ring(Index n, std::uint64_t seed) { return damped("ring", "stiff_ring", n, seed, -12, -10); }
 Spec stiff_lattice(Index n, std::uint64_t seed) { return damped("lattice", "stiff_lattice", n, seed, -12, -8); }
 
+// ---- contacts ---------------------------------------------------------------------------------------------------
+
+/// A free trunk of 10 kg on four legs of (n − 1)/4 bodies, `points` contacts under each.
+Spec legged(std::string_view name, Index n, std::uint64_t seed, int points) {
+  Draft d(name, seed);
+  d.body(-1, floating).mass_decade = 1;
+  for (int leg = 0; leg < 4; ++leg) {
+    const Index foot = limb(d, 0, std::max<Index>(1, (n - 1) / 4));
+    for (int p = 0; p < points; ++p) d.link(C::contact, {foot});
+  }
+  d.damp(D::rows, -4, -4);
+  return d.spec;
+}
+
+Spec quadruped(Index n, std::uint64_t seed) { return legged("quadruped", n, seed, 1); }
+Spec quadruped_feet(Index n, std::uint64_t seed) { return legged("quadruped_feet", n, seed, 4); }
+
+/// The stack with every second body of 1e9 kg, the first of 1 kg.
+Spec unequal_stack(Index n, std::uint64_t seed) {
+  Spec s = find_family("contacts").make(n, seed);
+  s.family = "unequal_stack";
+  for (std::size_t k = 1; k < s.bodies.size(); k += 2) s.bodies[k].mass_decade = 9;
+  return s;
+}
+
 // ---- postures ---------------------------------------------------------------------------------------------------
 
 /// Doors on two hinges each, all axes parallel: at least eight of ten rows say nothing new.
@@ -253,6 +278,9 @@ std::vector<FamilyRow> hard_families() {
       {"stiff_redundant", "coincident and dependent rows with R⁻¹ = 1e-10", stiff_redundant, {4}, 2},
       {"stiff_ring", "the ring with R⁻¹ from 1e-12 to 1e-10", stiff_ring, {5}, 2},
       {"stiff_lattice", "the lattice with R⁻¹ from 1e-12 to 1e-8", stiff_lattice, {4}, -1},
+      {"quadruped", "a free trunk on four legs, a contact under each", quadruped, {5, 13}, -1},
+      {"quadruped_feet", "a free trunk on four legs, four contacts under each", quadruped_feet, {5}, -1},
+      {"unequal_stack", "the stack with bodies of 1 kg and 1e9 kg in turn", unequal_stack, {2}, -1},
       {"parallel_hinges", "doors on two hinges each, all axes parallel", parallel_hinges, {4}, 2},
       {"stretched", "a straight arm held 1e-9 m off its line", stretched, {2, 5}, 2},
       {"folded", "an arm folded on itself, held 1e-6 m off its line", folded, {2, 5}, 2},

@@ -2,10 +2,8 @@
 //
 //   hard_cases [--family NAME] [--largest N] [--markdown]
 //
-// The right-hand side is an acceleration that forces of about one newton cause; the truth is truth.h. Exit code 1 when
-//   an answer called ok or not_converged is further off than its certificate says;
-//   an answer called ok holds NaN or breaks the bound of its error class;
-//   an answer called anything else holds numbers.
+// The right-hand side is an acceleration that forces of about one newton cause; the truth is truth.h. Exit code 1 when an
+// answer breaks a promise (answered.h).
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +11,8 @@
 #include <map>
 
 #include "generators/families_hard.h"
+#include "property_tests/answered.h"
 #include "property_tests/route.h"
-#include "property_tests/truth.h"
 
 namespace {
 
@@ -28,56 +26,6 @@ struct Options {
   bool markdown = false;
 };
 
-/// One operator on one problem.
-struct Cell {
-  Report report;
-  Errors errors;
-  bool finite = false;
-  std::string broken;   ///< which promise; empty: none
-};
-
-struct Answered {
-  const Case& c;
-  const Truth* truth;   ///< nullptr: A is singular, there is nothing to compare with
-  VectorX<double> a;
-  VectorX<Quad> lambda;
-};
-
-/// Largest error / (eps · bound of the operator's error class); −1: no bound.
-double law_ratio(const OperatorRow& row, const Answered& q, const MatrixX<double>& f) {
-  if (why_no_bound(Function::solve, q.c)) return -1;
-  const MatrixX<Quad> error = converted<Quad>(f) - MatrixX<Quad>(q.lambda);
-  return judge(error, error_bound(Function::solve, row, q.c, q.a), unit_roundoff<double>, "").ratio;
-}
-
-std::string broken_promise(const OperatorRow& row, const Answered& q, const Cell& cell, const MatrixX<double>& f) {
-  const Report& r = cell.report;
-  const bool answered = r.ok() || r.status == Status::not_converged;
-  if (!answered) return f.array().isNaN().all() ? "" : "numbers in an answer called " + std::string(name(r.status));
-  if (r.ok() && !cell.finite) return "NaN in an answer called ok";
-  if (!q.truth) return "";
-  if (r.error_bound >= 0 && !(q.truth->violation(cell.errors.energy, r.error_bound, q.truth->rounding(q.lambda)) < pass_below))
-    return "error " + std::to_string(cell.errors.energy) + " above the bound " + std::to_string(r.error_bound);
-  if (!r.ok()) return "";
-  const double ratio = law_ratio(row, q, f);
-  return ratio < pass_below ? "" : "error / (eps · bound) = " + std::to_string(ratio);
-}
-
-Cell solve(const OperatorRow& row, const Answered& q) {
-  Cell cell;
-  const auto op = row.make<double>();
-  op->analyze(q.c.problem.structure);
-  cell.report = op->update(q.c.problem, q.c.damping);
-  Workspace<double> work(op->workspace());
-  MatrixX<double> f = MatrixX<double>::Zero(q.a.size(), 1);
-  const Report solved = op->solve(q.a, f, work);
-  if (cell.report.ok() || solved.ok()) cell.report = solved;
-  cell.finite = f.allFinite();
-  if (q.truth && cell.finite) cell.errors = q.truth->errors(q.a, q.lambda, f.col(0));
-  cell.broken = broken_promise(row, q, cell, f);
-  return cell;
-}
-
 /// log10, one digit after the point; "exact" for 0.
 std::string digits(double x) {
   if (x == 0) return "exact";
@@ -87,7 +35,7 @@ std::string digits(double x) {
 }
 
 /// λ, motion and backward error, the bound; the status when it is not ok.
-std::string cell_text(const Cell& cell, bool compared) {
+std::string cell_text(const Answered& cell, bool compared) {
   const bool known = compared && cell.finite;
   std::string text = cell.report.ok() ? "" : std::string(name(cell.report.status));
   if (!known) return cell.report.ok() ? "ok" : text;
@@ -108,7 +56,7 @@ using Table = std::map<std::size_t, std::vector<std::string>>;
 int check_size(const HardCase& h, Index n, Table& table) {
   const Case c = make_case(h.family, n, 1);
   const Truth truth(c.problem, c.damping);
-  Answered q{c, truth.regular() ? &truth : nullptr, truth.reachable(vectors<double>(c.rows(), 1, 1)), {}};
+  Question q{c, truth.regular() ? &truth : nullptr, truth.reachable(vectors<double>(c.rows(), 1, 1)), {}};
   if (q.truth) q.lambda = truth.solve(q.a);
   int broken = 0;
   for (std::size_t k = 0; k < operators().size(); ++k) {
@@ -116,7 +64,7 @@ int check_size(const HardCase& h, Index n, Table& table) {
     if (!row.solves) continue;
     table[k].emplace_back("–");
     if (too_large(row, *c.problem.structure)) continue;
-    const Cell cell = solve(row, q);
+    const Answered cell = answered(row, q);
     table[k].back() = cell_text(cell, q.truth != nullptr);
     if (cell.broken.empty()) continue;
     std::cout << "broken: " << c.label << ", " << row.name << ": " << cell.broken << '\n';
