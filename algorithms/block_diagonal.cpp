@@ -10,7 +10,7 @@ template <class T> void Damping<T>::check_sizes(const Structure& s) const {
   require(static_cast<Index>(diagonal.size()) == s.rows, "Damping: the diagonal must have one entry per row");
   Index next = 0;
   for (const Block& b : blocks) {
-    require(b.R_inverse.rows() == b.R_inverse.cols(), "Damping: a block must be square");
+    require(b.R_inverse.rows() == b.R_inverse.cols() && b.R_inverse.rows() > 0, "Damping: a block must be square, and not empty");
     require(b.row >= next && b.row + b.R_inverse.rows() <= s.rows, "Damping: blocks must be disjoint, ascending and within the rows");
     next = b.row + b.R_inverse.rows();
     const auto holds = [&](const auto& c) { return b.row >= c.row && next <= c.row + c.rows; };
@@ -47,7 +47,6 @@ template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
   any_dense_ = !damping.blocks.empty();
   for (const auto& b : damping.blocks) {
     const Index m = b.R_inverse.rows();
-    if (m == 0) continue;
     const Index e = constraint_of_[b.row];
     const auto [row, count] = rows_[e];
     T* const dense = dense_.data() + first_[e];

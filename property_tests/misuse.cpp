@@ -47,13 +47,13 @@ bool throws(const std::function<Report()>& use) {
 
 std::string wrong_sizes(Operator<double>& op, const Problem<double>& problem) {
   const Damping<double> proper[] = {damped({}), damped({{0, 3}}), damped({{1, 2}}), damped({{0, 2}, {2, 1}}), damped({{3, 2}}),
-                                    damped({{3, 1}, {4, 1}}), damped({{5, 1}}), damped({{0, 3}, {3, 2}, {5, 1}}), damped({{1, 0}})};
+                                    damped({{3, 1}, {4, 1}}), damped({{5, 1}}), damped({{0, 3}, {3, 2}, {5, 1}})};
   for (const auto& d : proper)
     if (throws([&] { return op.update(problem, d); }) || throws([&] { return op.update_damping(d); }))
       return "refuses a damping with " + std::to_string(d.blocks.size()) + " blocks, the first at " + std::to_string(d.blocks.empty() ? -1 : d.blocks[0].row);
   Damping<double> wrong[] = {Damping<double>::uniform(5, 1), Damping<double>::uniform(7, 1), damped({{0, 4}}), damped({{2, 2}}),
                              damped({{4, 2}}), damped({{-1, 2}}), damped({{5, 2}}), damped({{0, 2}, {1, 2}}), damped({{3, 1}, {0, 1}}),
-                             damped({{0, 1}, {2, 2}}), damped({}), damped({})};
+                             damped({{0, 1}, {2, 2}}), damped({{1, 0}}), damped({}), damped({})};
   std::end(wrong)[-2].blocks.push_back({0, MatrixX<double>::Identity(2, 3)});
   std::end(wrong)[-1].blocks.push_back({0, MatrixX<double>::Identity(3, 2)});
   for (const auto& d : wrong)

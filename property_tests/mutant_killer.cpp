@@ -1,5 +1,6 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
-// every number of a plan, refusals of misuse, and that a lost pivot is named in every phase until there are better numbers.
+// every number of a plan, refusals of misuse, that what an operator was used for before leaves no trace, and that a lost
+// pivot is named in every phase until there are better numbers.
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -26,6 +27,7 @@
 #include "property_tests/laws.h"
 #include "property_tests/misuse.h"
 #include "property_tests/plan_model.h"
+#include "property_tests/reuse.h"
 #include "property_tests/summary.h"
 
 /// Which of the mutants compiled in runs; 0: none.
@@ -105,6 +107,8 @@ Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Cas
 std::vector<Check> checks(const std::vector<std::string_view>& names) {
   static std::vector<laws::Case> cases;
   for (const Pinned& pinned : problems) cases.push_back(laws::make_case(pinned.family, pinned.n, pinned.seed));
+  cases.push_back(laws::with_partial_blocks(laws::make_case("generic", 4, 1), 1));
+  cases.push_back(laws::with_partial_blocks(laws::make_case("joint_friction", 3, 1), 4));
   std::vector<Check> all, rest;
   for (const Pinned& planned : plans) {
     const auto s = generators::build(generators::find_family(planned.family).make(planned.n, planned.seed)).problem.structure;
@@ -116,6 +120,9 @@ std::vector<Check> checks(const std::vector<std::string_view>& names) {
     for (const std::string_view op_name : names)
       for (const laws::LawRow& law : laws::laws())
         (law.name.starts_with("exact ") ? all : rest).push_back([&law, &c, op_name] { return law_broken(law, find_operator(op_name), c); });
+  for (const std::string_view op_name : names)
+    for (std::size_t k = 0; k < cases.size(); ++k)
+      rest.push_back([op_name, k] { return laws::trace_of_use(find_operator(op_name), cases[(k + cases.size() - 1) % cases.size()], cases[k]); });
   for (const std::string_view op_name : names) rest.push_back([op_name] { return misuse_accepted(find_operator(op_name)); });
   for (const std::string_view op_name : names)
     for (const bool held : {true, false})

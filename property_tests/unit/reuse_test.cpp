@@ -1,0 +1,28 @@
+// Operators used for one problem after another; laws where blocks of the damping cover parts of constraints.
+#include <gtest/gtest.h>
+
+#include "property_tests/reuse.h"
+
+namespace delassus::laws {
+namespace {
+
+TEST(Reuse, LeavesNoTrace) {
+  const Case cases[] = {make_case("generic", 5, 1), make_case("chain", 2, 1), make_case("several_trees", 4, 1), make_case("block_damping", 3, 1),
+                        make_case("hard", 3, 1), make_case("no_rows", 4, 1), make_case("joint_friction", 4, 1)};
+  for (const OperatorRow& row : operators())
+    for (const Case& before : cases)
+      for (const Case& c : cases) EXPECT_EQ(trace_of_use(row, before, c), "");
+}
+
+TEST(Reuse, LawsHoldForPartialBlocks) {
+  std::uint64_t seed = 1;
+  for (const char* family : {"generic", "joint_friction", "several_trees"}) {
+    const Case c = with_partial_blocks(make_case(family, 3, 1), seed++);
+    c.damping.validate(*c.problem.structure);
+    for (const OperatorRow& row : operators())
+      for (const Outcome& o : check(row, c)) EXPECT_FALSE(o.failed()) << o.op << ", " << o.law << " on " << o.label << ": " << o.verdict.note;
+  }
+}
+
+}  // namespace
+}  // namespace delassus::laws
