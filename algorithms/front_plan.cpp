@@ -49,24 +49,24 @@ class Builder {
     f.first_member = plan_.first_member[i];
     f.members = plan_.first_member[i + 1] - f.first_member;
     f.parent_block = plan_.parent[i] < 0 ? 0 : block_of(i, plan_.parent[i]);
-    f.capacity = 6 + f.dofs;
     append_constraints(i, f);
     f.first_given = narrow(static_cast<Index>(out_.given.size()));
     f.given = narrow(static_cast<Index>(given_[i].size()));
     for (const int member : given_[i]) {
       out_.given.push_back(member);
-      f.capacity += out_.handed[member].capacity;
+      f.rows += out_.handed[member].rows;
     }
     f.row = out_.rows;
+    f.reflection = out_.reflections;
     f.v = out_.v;
     f.c = out_.c;
-    f.stride = padded(f.capacity);
-    hand_on(i, f);
+    f.stride = padded(f.rows + 1);
+    f.reflections = f.rows == 0 ? 0 : f.dofs + hand_on(f);
     out_.rows += f.stride;
+    out_.reflections += f.reflections;
     out_.v += f.reflections * f.stride;
     out_.c += static_cast<Index>(f.members) * f.dofs;
-    out_.largest = std::max(out_.largest, static_cast<Index>(f.capacity) * (f.members + 1));
-    out_.tallest = std::max(out_.tallest, f.stride);
+    out_.largest = std::max(out_.largest, static_cast<Index>(f.rows + 1) * (f.members + 1));
     out_.fronts.push_back(f);
   }
 
@@ -78,35 +78,39 @@ class Builder {
       f.joint_rows += narrow(c.rows);
       out_.joint_rows += c.rows;
     }
-    f.capacity += f.joint_rows;
+    f.rows = f.joint_rows;
     for (const int e : entries_.on_links[i]) {
       const auto& c = s_.link_constraints[e];
       out_.constraints.push_back({e, c.row, c.rows, narrow(static_cast<Index>(out_.links.size())),
                                   narrow(static_cast<Index>(c.links.size())), 0});
       for (const auto& link : c.links) out_.links.push_back({block_of(i, plan_.step[link.body]), link.first});
-      f.capacity += narrow(c.rows);
+      f.rows += narrow(c.rows);
     }
     f.constraints = narrow(static_cast<Index>(out_.constraints.size())) - f.first_constraint;
   }
 
-  void hand_on(int i, FrontPlan::Front& f) {
-    f.reflections = f.dofs;
-    int row = f.dofs, rest = f.capacity - f.dofs;
+  // Returns the number of reflections.
+  int hand_on(const FrontPlan::Front& f) {
+    const int source = narrow(static_cast<Index>(out_.fronts.size()));
+    int rest = f.rows, reflections = 0;
     for (int k = 0; k < f.members && rest > 0; ++k) {
-      const bool all = rest <= FrontPlan::handed_limit;
-      append_handed(i, k, row, std::min(rest, FrontPlan::handed_limit), f);
-      if (!all) f.reflections += 6;
-      row += 6;
-      rest = all ? 0 : rest - 6;
+      const bool reduced = rest > FrontPlan::handed_limit;
+      const int rows = reduced ? 6 : rest;
+      rest -= rows;
+      append_handed(k, {source, rest, rows, f.members - k, reduced, 0, 0}, f);
+      if (reduced) reflections += 6;
     }
+    return reflections;
   }
 
-  void append_handed(int i, int k, int row, int capacity, const FrontPlan::Front& f) {
+  void append_handed(int k, FrontPlan::Handed h, const FrontPlan::Front& f) {
     const int member = f.first_member + k, receiver = plan_.members[member].step;
-    out_.handed[member] = {i, row, capacity, f.members - k, out_.handed_size, narrow(static_cast<Index>(out_.handed_block.size()))};
+    h.first = out_.handed_size;
+    h.first_block = narrow(static_cast<Index>(out_.handed_block.size()));
     for (int l = k; l < f.members; ++l)
       out_.handed_block.push_back(block_of(receiver, plan_.members[f.first_member + l].step));
-    out_.handed_size += static_cast<Index>(capacity) * (f.members - k);
+    out_.handed_size += static_cast<Index>(h.rows) * h.blocks;
+    out_.handed[member] = h;
     given_[receiver].push_back(member);
   }
 

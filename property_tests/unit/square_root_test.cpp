@@ -16,57 +16,70 @@ namespace {
 
 using laws::judge;
 
-// One block of at most six columns, and what its reduction leaves.
+// A panel of leading columns only, reduced column by column, and what is left of it.
 struct Reduction {
-  std::vector<Six<double>> rows;
-  std::vector<double> v, beta;
-  std::vector<int> pivot;
-  std::vector<Six<double>> kept;
-  int lane[6] = {}, reduced = 0;
+  Index stride;
+  std::vector<double> columns, beta;
+  std::vector<int> lane, pivot;
+  MatrixX<double> left;  // row k: the row that reflection k completed, from column lane[k] on
 
-  Reduction(const MatrixX<double>& A, int columns)
-      : rows(static_cast<std::size_t>(A.rows()), Six<double>::zero()), v(static_cast<std::size_t>(6 * stride(A)), 7.0),
-        beta(6), pivot(6), kept(6, Six<double>::zero()) {
-    const double nothing[6] = {};
-    for (Index r = 0; r < A.rows(); ++r)
-      for (Index c = 0; c < A.cols(); ++c) rows[r].v[c] = A(r, c);
-    const Strip<double> strip{rows.data(), A.rows(), 1, static_cast<int>(A.rows())};
-    reduced = triangularise(strip, 0, columns, nothing, Reflections<double>{v.data(), stride(A), beta.data(), pivot.data()}, 0,
-                            lane, [&](int k, int row) {
-                              kept[k] = rows[row];
-                              rows[row] = Six<double>::zero();
-                            });
+  explicit Reduction(const MatrixX<double>& A)
+      : stride((A.rows() + 7) / 8 * 8), columns(static_cast<std::size_t>(stride * A.cols()), 0.0),
+        left(MatrixX<double>::Zero(A.cols(), A.cols())) {
+    const int width = static_cast<int>(A.cols());
+    const Panel<double> panel{columns.data(), stride, width, nullptr, 0, 0};
+    double squared[6];
+    for (int c = 0; c < width; ++c) {
+      lane.push_back(c);
+      for (Index r = 0; r < A.rows(); ++r) panel.column(c)[r] = A(r, c);
+      squared[c] = A.col(c).squaredNorm();
+    }
+    for (int k = 0, last = static_cast<int>(A.rows()) - 1; k < width; ++k, --last) {
+      panel.bring_longest(k, squared, lane.data());
+      if (!(squared[k] > 0)) return;
+      const Reflection<double> r = panel.reduce(k, squared[k], last + 1);
+      panel.exchange(k, r.pivot, last);
+      beta.push_back(r.beta);
+      pivot.push_back(r.pivot);
+      left(k, lane[k]) = r.left;
+      for (int c = k + 1; c < width; ++c) {
+        left(k, lane[c]) = std::exchange(panel.column(c)[last], 0.0);
+        squared[c] = inner(panel.column(c), panel.column(c), last);
+      }
+    }
   }
-  static Index stride(const MatrixX<double>& A) { return (A.rows() + 7) / 8 * 8; }
-  [[nodiscard]] Reflections<const double> reflections(const MatrixX<double>& A) const {
-    return {v.data(), stride(A), beta.data(), pivot.data()};
+  /// Q times the rows left, column c.
+  [[nodiscard]] VectorX<double> restored(Index rows, int c) const {
+    VectorX<double> x = VectorX<double>::Zero(stride);
+    for (std::size_t k = 0; k < beta.size(); ++k) x[rows - 1 - static_cast<Index>(k)] = left(static_cast<Index>(k), c);
+    for (std::size_t k = beta.size(); k-- > 0;) {
+      const int last = static_cast<int>(rows) - 1 - static_cast<int>(k);
+      std::swap(x[pivot[k]], x[last]);
+      reflect(x.data(), columns.data() + static_cast<Index>(k) * stride, beta[k], last + 1);
+    }
+    return x.head(rows);
   }
 };
 
 TEST(Householder, PivotsAreExactWhereNormsAre) {
   MatrixX<double> A(4, 2);
   A << 0, 2, 0, 2, 4, 0, 0, 1;
-  const Reduction r(A, 2);
-  ASSERT_EQ(r.reduced, 2);
-  EXPECT_EQ(r.lane[0], 0);  // the longer column first
-  EXPECT_EQ(r.pivot[0], 2);  // its largest entry
-  EXPECT_EQ(r.kept[0][0], -4);
-  EXPECT_EQ(r.kept[0][1], 0);
-  EXPECT_EQ(r.pivot[1], 0);
-  EXPECT_EQ(r.kept[1][1], -3);
+  const Reduction r(A);
+  EXPECT_EQ(r.lane, (std::vector<int>{0, 1}));   // the longer column first
+  EXPECT_EQ(r.pivot, (std::vector<int>{2, 0}));  // its largest entry
+  EXPECT_EQ(r.left(0, 0), -4);
+  EXPECT_EQ(r.left(0, 1), 0);
+  EXPECT_EQ(r.left(1, 1), -3);
+  EXPECT_EQ(r.left(1, 0), 0);
 }
 
-TEST(Householder, StopsAtAColumnWithoutSupport) {
-  MatrixX<double> A = MatrixX<double>::Zero(5, 3);
-  A.col(1) << 1, 2, 3, 4, 5;
-  const Reduction r(A, 3);
-  EXPECT_EQ(r.reduced, 1);
-  EXPECT_EQ(r.lane[0], 1);
-  A(2, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_LT(Reduction(A, 3).reduced, 3);
+TEST(Householder, ANotANumberReachesEveryColumnBehind) {
+  MatrixX<double> A = MatrixX<double>::Ones(3, 2);
+  A(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(Reduction(A).left(0, 1)));
 }
 
-// A = Q (R; 0), each row to an accuracy of its own size, whatever the sizes of the others.
+// A = Q (0; R), each row to an accuracy of its own size, whatever the sizes of the others.
 TEST(Householder, EveryRowKeepsItsOwnAccuracy) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -74,19 +87,11 @@ TEST(Householder, EveryRowKeepsItsOwnAccuracy) {
     MatrixX<double> A(11, 4);
     for (Index r = 0; r < 11; ++r)
       for (Index c = 0; c < 4; ++c) A(r, c) = number(engine) * (r % 3 == 2 ? 0x1p40 : r % 3 == 1 ? 0x1p10 : 1);
-    const Reduction reduction(A, 4);
-    ASSERT_EQ(reduction.reduced, 4);
+    const Reduction reduction(A);
+    ASSERT_EQ(reduction.beta.size(), 4u);
     MatrixX<Quad> error(11, 4), bound(11, 4);
-    for (int c = 0; c < 4; ++c) {
-      alignas(64) double x[16] = {};
-      const auto column = reduction.lane[c];
-      for (int k = 0; k <= c; ++k) x[reduction.pivot[k]] = reduction.kept[k][column];
-      reduction.reflections(A).apply_transposed(x, 4, 11);
-      for (Index r = 0; r < 11; ++r) {
-        error(r, c) = Quad(x[r]) - Quad(A(r, column));
-        bound(r, c) = Quad(A.row(r).cwiseAbs().maxCoeff()) * Quad(4);
-      }
-    }
+    for (int c = 0; c < 4; ++c) error.col(c) = reduction.restored(11, c).cast<Quad>() - A.col(c).cast<Quad>();
+    for (Index r = 0; r < 11; ++r) bound.row(r).setConstant(Quad(A.row(r).cwiseAbs().maxCoeff()) * Quad(4));
     const auto verdict = judge(error, bound, unit_roundoff<double>, "4 · largest entry of the row");
     EXPECT_TRUE(verdict.passed()) << verdict.ratio << " in row " << verdict.row;
   }
