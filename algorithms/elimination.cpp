@@ -128,8 +128,7 @@ class Blocks {
 void append_runs(Plan& plan) {
   for (int i = plan.first_active; i < plan.steps; ++i) {
     const int dofs = plan.first_column[i + 1] - plan.first_column[i];
-    const int q = plan.first_member[i + 1] - plan.first_member[i];
-    const bool simple = q == 1 && plan.members[plan.first_member[i]].block < 0;
+    const bool simple = plan.simple(i);
     if (plan.runs.empty() || plan.runs.back().dofs != dofs || plan.runs.back().simple != simple)
       plan.runs.push_back({i, i, dofs, simple});
     plan.runs.back().end = i + 1;

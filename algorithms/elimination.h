@@ -49,6 +49,10 @@ struct Plan {
   std::vector<int> first_constraint_pair;
   std::vector<int> constraint_pairs;
 
+  /// Step i has no couplings, and a parent: the plain articulated-body step.
+  [[nodiscard]] bool simple(int i) const {
+    return first_member[i + 1] - first_member[i] == 1 && parent[i] >= 0 && members[first_member[i]].block < 0;
+  }
   [[nodiscard]] int active() const { return steps - first_active; }
   [[nodiscard]] int active_columns() const { return first_column[steps] - first_column[first_active]; }
   [[nodiscard]] Index bytes() const;

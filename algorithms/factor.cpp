@@ -1,6 +1,7 @@
 #include "algorithms/factor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "algorithms/stochastic.h"
 
@@ -15,11 +16,11 @@ template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan)
   d_inverse_.assign(columns, T(0));
   armature_.assign(columns, T(0));
   w_.assign(static_cast<std::size_t>(plan.first_w.back()), Six<T>::zero());
-  l_of_.assign(static_cast<std::size_t>(plan.steps), -1);
-  int wide_joints = 0;
+  e_of_.assign(static_cast<std::size_t>(plan.steps), -1);
+  int vectors = 0;
   for (int i = 0; i < plan.steps; ++i)
-    if (plan.first_column[i + 1] - plan.first_column[i] > 1) l_of_[i] = wide_joints++;
-  l_.assign(static_cast<std::size_t>(36 * wide_joints), T(0));
+    if (plan.first_column[i + 1] - plan.first_column[i] > 1) e_of_[i] = 6 * std::exchange(vectors, vectors + 1);
+  e_.assign(static_cast<std::size_t>(6 * vectors), Six<T>::zero());
   inertia_.assign(static_cast<std::size_t>(plan.steps), SixBySix<T>::zero());
   inertia0_.assign(active, SixBySix<T>::zero());
   s0_.assign(static_cast<std::size_t>(plan.active_columns()), Six<T>::zero());
@@ -57,7 +58,6 @@ template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan)
 }
 
 template <class T> Report Factor<T>::start(const Problem<T>& problem) {
-  const int active_column = plan_->first_column[plan_->first_active];
   for (int i = 0; i < plan_->steps; ++i) {
     const int body = plan_->body[i];
     inertia_[i] = load(problem.H[body]);
@@ -65,21 +65,27 @@ template <class T> Report Factor<T>::start(const Problem<T>& problem) {
     for (int c = plan_->first_column[i]; c < plan_->first_column[i + 1]; ++c, ++dof) {
       s_[c] = load(problem.S[dof]);
       armature_[c] = problem.armature[dof];
-      if (c >= active_column) s0_[c - active_column] = s_[c];
     }
   }
   for (std::size_t r = 0; r < k_.size(); ++r) k_[r] = load(problem.K[r]);
   std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
   joint_k_ = joint_k0_;
-  const Report report = eliminate(0, plan_->first_active);
-  std::copy(inertia_.begin() + plan_->first_active, inertia_.end(), inertia0_.begin());
-  return report;
+  started_ = true;
+  return eliminate(0, plan_->first_active);
 }
 
 template <class T> Report Factor<T>::update_weights(const BlockDiagonal<T>& weights) {
-  std::copy(inertia0_.begin(), inertia0_.end(), inertia_.begin() + plan_->first_active);
-  std::copy(s0_.begin(), s0_.end(), s_.begin() + plan_->first_column[plan_->first_active]);
-  joint_k_ = joint_k0_;
+  const auto inertia = inertia_.begin() + plan_->first_active;
+  const auto s = s_.begin() + plan_->first_column[plan_->first_active];
+  if (started_) {  // the first weights after start: keep what other ones will need
+    std::copy(inertia, inertia_.end(), inertia0_.begin());
+    std::copy(s, s_.end(), s0_.begin());
+  } else {
+    std::copy(inertia0_.begin(), inertia0_.end(), inertia);
+    std::copy(s0_.begin(), s0_.end(), s);
+    joint_k_ = joint_k0_;
+  }
+  started_ = false;
   add_weights(weights);
   return eliminate(plan_->first_active, plan_->steps);
 }
@@ -147,6 +153,7 @@ template <class T> Report Factor<T>::eliminate(int begin, int end) {
 // Alg. 4, lines 14–32, in the basis in which D_i is diagonal.
 template <class T> bool Factor<T>::eliminate(int i) {
   const int n = plan_->first_column[i + 1] - plan_->first_column[i];
+  if (n == 1 && plan_->simple(i)) return eliminate_simple(i);
   const Six<T>* const s = s_.data() + plan_->first_column[i];
   Six<T>* w = w_.data() + plan_->first_w[i];
   for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)  // W_j = H_ji S_i
@@ -159,7 +166,24 @@ template <class T> bool Factor<T>::eliminate(int i) {
   return true;
 }
 
-// U = H S, D = A + 𝒦ᵀR𝒦 + SᵀU = L D Lᵀ; S, W_j and 𝒦 take the basis S L⁻ᵀ.
+// The plain articulated-body step of one degree of freedom: H_ππ += H_ii − U D⁻¹Uᵀ.
+template <class T> bool Factor<T>::eliminate_simple(int i) {
+  const int c = plan_->first_column[i], step = i - plan_->first_active;
+  SixBySix<T>& H = inertia_[i];
+  const Six<T> U = multiply(H, s_[c]);
+  T D = dot(s_[c], U) + armature_[c];
+  if (step >= 0 && joint_weight_of_[step] >= 0) D += joint_weight_[joint_weight_of_[step]](0, 0);
+  if (!ScalarTraits<T>::usable_pivot(D)) return false;
+  d_inverse_[c] = T(1) / D;
+  Six<T> w = U;
+  scale(w, d_inverse_[c]);
+  subtract_outer(H, U, w);
+  add(inertia_[plan_->parent[i]], H);
+  w_[plan_->first_w[i]] = w;
+  return true;
+}
+
+// U = H S, D = A + 𝒦ᵀR𝒦 + SᵀU = L D Lᵀ; S, W_j and 𝒦 take the basis E = L⁻ᵀ.
 template <class T> bool Factor<T>::diagonalise(int i) {
   const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
   const int q = plan_->first_member[i + 1] - plan_->first_member[i];
@@ -182,13 +206,15 @@ template <class T> bool Factor<T>::diagonalise(int i) {
     if (plan_->members[plan_->first_member[i] + k].step == plan_->parent[i])
       for (int c = 0; c < n; ++c) add(w[k * n + c], U[c]);
 
+  Six<T>* const e = e_.data() + std::max(0, e_of_[i]);
+  for (int c = 0; n > 1 && c < n; ++c) e[c] = unit<T>(c);
   for (int c = 0; c < n; ++c) {
     if (!ScalarTraits<T>::usable_pivot(D[c][c])) return false;
     d_inverse_[first + c] = T(1) / D[c][c];
     for (int d = c + 1; d < n; ++d) {
       const T l = D[d][c] * d_inverse_[first + c];
-      l_[36 * l_of_[i] + 6 * d + c] = l;
-      for (int e = d; e < n; ++e) D[e][d] -= D[e][c] * l;
+      for (int f = d; f < n; ++f) D[f][d] -= D[f][c] * l;
+      subtract_scaled(e[d], e[c], l);
       subtract_scaled(s[d], s[c], l);
       for (int k = 0; k < q; ++k) subtract_scaled(w[k * n + d], w[k * n + c], l);
       if (weight >= 0)
@@ -257,12 +283,12 @@ template <class T> void Factor<T>::update_members(int i) {
 template <class T> Index Factor<T>::workspace() const { return 8 * plan_->active() + (plan_->active_columns() + 7) / 8 * 8; }
 
 template <class T> Index Factor<T>::bytes() const {
-  const auto sixes = s_.size() + w_.size() + s0_.size() + k_.size() + weighted_.size();
+  const auto sixes = s_.size() + e_.size() + w_.size() + s0_.size() + k_.size() + weighted_.size();
   const auto blocks = inertia_.size() + inertia0_.size() + block_.size();
-  const auto scalars = d_inverse_.size() + l_.size() + armature_.size() + joint_k0_.size() + joint_k_.size() + 36 * joint_weight_.size();
+  const auto scalars = d_inverse_.size() + armature_.size() + joint_k0_.size() + joint_k_.size() + 36 * joint_weight_.size();
   return static_cast<Index>(sixes * sizeof(Six<T>) + blocks * sizeof(SixBySix<T>) + scalars * sizeof(T) +
                             attachments_.size() * sizeof(Attachment) + joint_rows_.size() * sizeof(JointRows) +
-                            (first_joint_rows_.size() + joint_weight_of_.size() + l_of_.size()) * sizeof(int));
+                            (first_joint_rows_.size() + joint_weight_of_.size() + e_of_.size()) * sizeof(int));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class Factor<T>;

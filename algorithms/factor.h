@@ -5,8 +5,8 @@
 //            D_i = A_i + 𝒦ᵢᵀ R 𝒦ᵢ + S_iᵀ U_i
 //          the body is merged into its parent (H_ππ += H_ii + H_iπ + H_πi, H_πj += H_ij) and the Schur complement
 //            H_jk −= W_j D_i⁻¹ W_kᵀ     over Q_i = N_i ∪ {π(i)}
-//          is taken. D_i = L D Lᵀ, and S_i, W_j, 𝒦ᵢ are stored in the basis S_i L⁻ᵀ, in which D_i is diagonal: a joint of
-//          n_i degrees of freedom is n_i scalar steps, so the sweeps know no joint types.
+//          is taken. D_i = L D Lᵀ, and S_i, W_j, 𝒦ᵢ are stored in the basis E_i = L⁻ᵀ, in which D_i is diagonal (E_iᵀD_iE_i):
+//          a joint of n_i degrees of freedom is n_i scalar steps, so the sweeps know no joint types.
 // Sweeps   force convention (docs/paper_notes.md): u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹u; then
 //            ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j;   a_i = a_π + S_i ν.
 // Singular a pivot of D_i that is not positive: M (or M_R) is singular in this arithmetic; reported, never repaired.
@@ -36,9 +36,10 @@ template <class T> class Factor {
   /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
   template <class V> void project(const V* x, V* y, V* work) const;
 
-  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of
-  /// freedom; ν may be nullptr. Returns (Jᵀx + τ)ᵀ M_R⁻¹ (Jᵀx + τ), the squared energy norm of ν.
-  T solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
+  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of freedom.
+  void solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
+  /// τᵀ M_R⁻¹ τ, by the backward sweep alone; every joint active.
+  [[nodiscard]] T energy(const T* tau, T* work) const;
 
   /// d_r ≥ (J M⁻¹Jᵀ)_rr, equal for rows on one body or joint, at most k times it and twice the mixed terms for k links: from
   /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M, every joint
@@ -65,21 +66,25 @@ template <class T> class Factor {
   void add_joint_weights(const BlockDiagonal<T>& weights);
   Report eliminate(int begin, int end);
   bool eliminate(int i);
+  bool eliminate_simple(int i);
   bool diagonalise(int i);
   void update_members(int i);
 
   template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
+  void add_torques(const T* tau, T* u) const;
+  void velocities(const T* u, T* nu) const;
   template <class V> void backward(Six<V>* f, V* u) const;
   template <class V> void forward(Six<V>* f, V* u) const;
   template <class V> void gather(const Six<V>* f, const V* u, V* y) const;
 
   const Structure* structure_ = nullptr;
   const Plan* plan_ = nullptr;
+  bool started_ = false;  // no weights since start
   // Everything below is in sweep order (steps, then their columns).
-  std::vector<Six<T>> s_;            // S_i L⁻ᵀ, per column
+  std::vector<Six<T>> s_;            // S_i E_i, per column
   std::vector<T> d_inverse_;         // 1/D, per column
-  std::vector<T> l_;                 // L of D_i = L D Lᵀ, 36 per joint of more than one degree of freedom
-  std::vector<int> l_of_;            // per step, −1: one degree of freedom or none
+  std::vector<Six<T>> e_;            // columns of E_i, six per joint of more than one degree of freedom
+  std::vector<int> e_of_;            // per step, −1: one degree of freedom or none
   std::vector<Six<T>> w_;            // W_j D⁻¹, per step, member, column
   std::vector<SixBySix<T>> inertia_; // H_ii while a step runs
   std::vector<SixBySix<T>> block_;   // couplings H_ij
@@ -87,7 +92,7 @@ template <class T> class Factor {
   std::vector<Six<T>> s0_;             // S_i of the active steps
   std::vector<T> armature_;
   std::vector<Six<T>> k_;              // rows of the K_e^i
-  std::vector<T> joint_k0_, joint_k_;  // 𝒦_i and 𝒦_i L⁻ᵀ
+  std::vector<T> joint_k0_, joint_k_;  // 𝒦_i and 𝒦_i E_i
   std::vector<Six<T>> weighted_;       // scratch: R_e K_e^j
   std::vector<Attachment> attachments_;
   std::vector<JointRows> joint_rows_;   // ascending by step

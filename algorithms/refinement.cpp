@@ -36,26 +36,33 @@ double contraction(double now, double before) { return now < before ? now / befo
 double relative(double x, double to) { return x == 0 ? 0 : x / to; }
 }  // namespace
 
+// (ν, λ) = (δν, δλ): the first evaluation is the correction from zero. r₁ᵀδν is 0 or not finite.
+template <class T> typename Refinement<T>::Progress Refinement<T>::start(Buffers& b) const {
+  std::copy(b.d_nu, b.d_nu + b.n, b.nu);
+  std::copy(b.d_lambda, b.d_lambda + b.m, b.lambda);
+  std::copy(b.d_lambda, b.d_lambda + b.m, b.f);
+  Progress now;
+  now.size = std::isfinite(magnitude(dot(b.r1, b.d_nu, b.n) + dot(b.a, b.f, b.m))) ? 1 : std::numeric_limits<double>::quiet_NaN();
+  now.motion = largest_magnitude(b.d_nu, b.n);
+  now.force = largest_magnitude(b.d_lambda, b.m);
+  return now;
+}
+
 // ν += δν, λ += δλ, and what they say about the error before and after.
 template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffers& b, const Progress& before) const {
-  Progress now;
-  T energy(0), total(0);  // r₁ᵀδν + r₂ᵀδλ and λᵀa
-  for (Index c = 0; c < b.n; ++c) {
-    b.nu[c] += W(b.d_nu[c]);
-    energy += b.r1[c] * b.d_nu[c];
-    now.motion = larger(now.motion, magnitude(b.d_nu[c]));
-  }
-  double largest = 0, at_stake = 0;  // max|λ|, max|R r₂|
-  if (invertible_.ok()) weights_.multiply(b.r2, b.scratch);
-  else std::copy(b.d_lambda, b.d_lambda + b.m, b.scratch);
+  for (Index c = 0; c < b.n; ++c) b.nu[c] += W(b.d_nu[c]);
   for (Index r = 0; r < b.m; ++r) {
     b.lambda[r] += W(b.d_lambda[r]);
-    energy += b.r2[r] * b.d_lambda[r];
-    total += narrow<T>(b.lambda[r]) * b.a[r];
-    largest = larger(largest, magnitude(b.lambda[r]));
-    now.force = larger(now.force, magnitude(b.d_lambda[r]));
-    at_stake = larger(at_stake, magnitude(b.scratch[r]));
+    b.f[r] = narrow<T>(b.lambda[r]);
   }
+  if (invertible_.ok()) weights_.multiply(b.r2, b.scratch);
+  else std::copy(b.d_lambda, b.d_lambda + b.m, b.scratch);
+  const double largest = largest_magnitude(b.f, b.m), at_stake = largest_magnitude(b.scratch, b.m);  // max|λ|, max|R r₂|
+  const T energy = dot(b.r1, b.d_nu, b.n) + dot(b.r2, b.d_lambda, b.m), total = dot(b.f, b.a, b.m);
+
+  Progress now;
+  now.motion = largest_magnitude(b.d_nu, b.n);
+  now.force = largest_magnitude(b.d_lambda, b.m);
   now.energy = relative(std::sqrt(magnitude(energy)), std::sqrt(magnitude(total)));
   now.size = larger(relative(now.force, largest), now.energy);
   const double rho = larger(larger(contraction(now.motion, before.motion), contraction(now.force, before.force)),
@@ -70,13 +77,8 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
 template <class T> double Refinement<T>::certify(Buffers& b) const {
   if (!invertible_.ok()) return -1;
   weights_.multiply(b.r2, b.scratch);
-  T squared(0), total(0);
-  for (Index r = 0; r < b.m; ++r) {
-    squared += b.r2[r] * b.scratch[r];
-    total += narrow<T>(b.lambda[r]) * b.a[r];
-    b.scratch[r] = T(0);
-  }
-  squared += factor_M_.solve(b.scratch, b.r1, nullptr, nullptr, b.rest);
+  const T at_rows = dot(b.r2, b.scratch, b.m), total = dot(b.f, b.a, b.m);
+  const T squared = at_rows + factor_M_.energy(b.r1, b.rest);
   const double bound = std::sqrt(magnitude(squared)), s = static_cast<double>(total);
   if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
   const double t = relative(bound, std::sqrt(s));

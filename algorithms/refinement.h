@@ -18,8 +18,8 @@
 //          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. There is none where R⁻¹ has a zero.
 //          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
 //          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.
-// Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual and half a sweep.
-// Workspace  4 n + 5 m, the residual's or the correction's.
+// Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual in T and half a sweep.
+// Workspace  4 n + 7 m, the residual's or the correction's.
 // Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 #pragma once
 
@@ -28,6 +28,7 @@
 #include "algorithms/columns.h"
 #include "algorithms/factor.h"
 #include "algorithms/kkt_residual.h"
+#include "algorithms/vectors.h"
 
 namespace delassus {
 
@@ -68,6 +69,7 @@ template <class T> class Refinement {
     double patient = 1;   // the same if corrections are slow in directions that this one does not show
     double energy = 1, motion = 0, force = 0;  // of the last one: in the energy norm, max|δν|, max|δλ|
   };
+  Progress start(Buffers& b) const;
   Progress advance(Buffers& b, const Progress& before) const;
   double certify(Buffers& b) const;
 
@@ -79,30 +81,27 @@ template <class T> class Refinement {
   Report invertible_;
 };
 
-// One column's vectors; Wide ones first, so that everything stays aligned.
+// One column's vectors, zero up to their padded ends; Wide ones first, so that everything stays aligned.
 template <class T> struct Refinement<T>::Buffers {
   static constexpr Index wide = static_cast<Index>(sizeof(W) / sizeof(T));
   Index n, m;
-  const T* a;
   W *nu, *lambda;
+  T *a, *f;  // the right-hand side; λ rounded to T
   T *d_nu, *r1, *d_lambda, *r2, *scratch;
   T* rest;
 
-  Buffers(const Structure& s, const T* rhs, T* work) : n(s.dofs()), m(s.rows), a(rhs) {
+  Buffers(const Structure& s, const T* rhs, T* work) : n(s.dofs()), m(s.rows) {
     nu = reinterpret_cast<W*>(work);
     lambda = reinterpret_cast<W*>(work += wide * padded(n));
-    d_nu = work += wide * padded(m);
-    r1 = work += padded(n);
-    d_lambda = work += padded(n);
-    r2 = work += padded(m);
-    scratch = work += padded(m);
-    rest = work + padded(m);
-    std::fill(nu, nu + n, W(T(0)));
-    std::fill(lambda, lambda + m, W(T(0)));
-    std::fill(r1, r1 + n, T(0));
-    std::copy(a, a + m, r2);
+    T* const narrow_ones = work += wide * padded(m);
+    for (T** x : {&d_nu, &r1}) *x = work, work += padded(n);
+    for (T** x : {&a, &f, &d_lambda, &r2, &scratch}) *x = work, work += padded(m);
+    rest = work;
+    std::fill(narrow_ones, rest, T(0));
+    std::copy(rhs, rhs + m, a);
+    std::copy(rhs, rhs + m, r2);
   }
-  static Index size(const Structure& s) { return (wide + 2) * padded(s.dofs()) + (wide + 3) * padded(s.rows); }
+  static Index size(const Structure& s) { return (wide + 2) * padded(s.dofs()) + (wide + 5) * padded(s.rows); }
 };
 
 template <class T>
@@ -110,14 +109,13 @@ template <class Correct>
 Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu) const {
   Buffers b(*structure_, a, work);
   correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
-  Progress now = advance(b, {});  // the first evaluation is the correction from zero
-  now.expected = now.patient = now.energy = 1;
-
-  Progress before = now;
+  Progress now = start(b), before = now;
   Report report;
   while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
-    residual_.evaluate(b.nu, b.lambda, b.a, b.r1, b.r2, b.rest);
     const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
+    // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
+    if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
+    else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
     if (done || wanted.error > 0) report.error_bound = certify(b);
     if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
@@ -134,7 +132,7 @@ Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, cons
   }
   if (!std::isfinite(now.size)) report.status = Status::not_finite;
   if (report.ok() && wanted.error > 0 && report.error_bound > wanted.error) report.status = Status::not_converged;
-  for (Index r = 0; r < b.m; ++r) f[r] = narrow<T>(b.lambda[r]);
+  std::copy(b.f, b.f + b.m, f);
   if (nu != nullptr)
     for (Index c = 0; c < b.n; ++c) nu[c] = narrow<T>(b.nu[c]);
   return report;

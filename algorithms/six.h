@@ -10,6 +10,10 @@
 
 #include <type_traits>
 
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 #include "algorithms/scalars.h"
 #include "algorithms/spatial.h"
 
@@ -37,10 +41,32 @@ template <> struct Six<double> {
   static Six zero() { return {Lanes8{}}; }
 };
 
-template <class T> [[nodiscard]] inline Six<T> load(const Vector6<T>& x) {
+/// The six numbers from x on.
+template <class T> [[nodiscard]] inline Six<T> load(const T* x) {
   Six<T> y;
-  if constexpr (std::is_same_v<T, double>) y.v = Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
-  else for (int k = 0; k < 6; ++k) y.v[k] = x[k];
+  if constexpr (std::is_same_v<T, double>) {
+#ifdef __AVX512F__
+    y.v = _mm512_maskz_loadu_pd(0x3f, x);
+#else
+    y.v = Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
+#endif
+  } else for (int k = 0; k < 6; ++k) y.v[k] = x[k];
+  return y;
+}
+
+template <class T> [[nodiscard]] inline Six<T> load(const Vector6<T>& x) { return load(x.data()); }
+
+/// The first n numbers from x on, then zeros.
+template <class T> [[nodiscard]] inline Six<T> load(const T* x, int n) {
+  if (n == 6) return load(x);
+  Six<T> y = Six<T>::zero();
+  for (int k = 0; k < n; ++k) y.v[k] = x[k];
+  return y;
+}
+/// The k-th unit vector.
+template <class T> [[nodiscard]] inline Six<T> unit(int k) {
+  Six<T> y = Six<T>::zero();
+  y.v[k] = T(1);
   return y;
 }
 
@@ -69,6 +95,20 @@ template <class T> inline void scale(Six<T>& y, const T& s) {
   else for (int k = 0; k < 6; ++k) y.v[k] *= s;
 }
 
+/// x · s
+template <class T, class V> [[nodiscard]] inline Six<V> scaled(const Six<T>& x, const V& s) {
+  Six<V> y;
+  if constexpr (std::is_same_v<V, double>) y.v = lanes(x) * s;
+  else for (int k = 0; k < 6; ++k) y.v[k] = x[k] * s;
+  return y;
+}
+template <class T> [[nodiscard]] inline Six<T> negated(const Six<T>& x) {
+  Six<T> y;
+  if constexpr (std::is_same_v<T, double>) y.v = -x.v;
+  else for (int k = 0; k < 6; ++k) y.v[k] = -x.v[k];
+  return y;
+}
+
 /// xᵀ y
 template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Six<V>& y) {
   if constexpr (std::is_same_v<V, double>) {
@@ -83,6 +123,41 @@ template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Si
   }
 }
 
+/// x ∘ y, entry by entry.
+template <class T, class V> [[nodiscard]] inline Six<V> product(const Six<T>& x, const Six<V>& y) {
+  Six<V> p;
+  if constexpr (std::is_same_v<V, double>) p.v = lanes(x) * y.v;
+  else for (int k = 0; k < 6; ++k) p.v[k] = x[k] * y.v[k];
+  return p;
+}
+
+/// Entries picked from a and b, eight lanes: 0…7 are a's, 8…15 b's.
+template <int... lane> [[nodiscard]] inline Six<double> picked(const Six<double>& a, const Six<double>& b) {
+  return {__builtin_shufflevector(a.v, b.v, lane...)};
+}
+/// sum[r] = Σ_k p[r][k] for four of them at once.
+template <class V> [[gnu::always_inline]] inline void sums_in_lanes(const Six<V> (&p)[4], V (&sum)[4]) {
+  const auto pairs = [](const Six<V>& a, const Six<V>& b) {  // a0 + a1, b0 + b1, a2 + a3, b2 + b3, …
+    Six<V> s = picked<0, 8, 2, 10, 4, 12, 6, 14>(a, b);
+    add(s, picked<1, 9, 3, 11, 5, 13, 7, 15>(a, b));
+    return s;
+  };
+  const Six<V> t = pairs(p[0], p[1]), u = pairs(p[2], p[3]);
+  Six<V> s = picked<0, 1, 8, 9, 4, 5, 12, 13>(t, u);
+  add(s, picked<2, 3, 10, 11, 6, 7, 14, 15>(t, u));
+  add(s, picked<4, 5, 6, 7, 0, 1, 2, 3>(s, s));
+  for (int r = 0; r < 4; ++r) sum[r] = s[r];
+}
+/// The same for the first `count` of them; the others must be zero.
+template <class V> inline void sums(const Six<V> (&p)[4], V (&sum)[4], Index count) {
+  if constexpr (std::is_same_v<V, double>) sums_in_lanes(p, sum);
+  else
+    for (Index r = 0; r < count; ++r) {
+      sum[r] = p[r].v[0];
+      for (int k = 1; k < 6; ++k) sum[r] += p[r].v[k];
+    }
+}
+
 template <class T> struct SixBySix {
   Six<T> column[6];
   static SixBySix zero() { SixBySix m; for (auto& c : m.column) c = Six<T>::zero(); return m; }
@@ -90,14 +165,13 @@ template <class T> struct SixBySix {
 
 template <class T> [[nodiscard]] inline SixBySix<T> load(const Matrix6<T>& x) {
   SixBySix<T> y;
-  for (int c = 0; c < 6; ++c) y.column[c] = load<T>(Vector6<T>(x.col(c)));
+  for (int c = 0; c < 6; ++c) y.column[c] = load<T>(x.data() + 6 * c);
   return y;
 }
 /// m x
-template <class T> [[nodiscard]] inline Six<T> multiply(const SixBySix<T>& m, const Six<T>& x) {
-  Six<T> y = m.column[0];
-  scale(y, T(x[0]));
-  for (int c = 1; c < 6; ++c) add_scaled(y, m.column[c], T(x[c]));
+template <class T, class V> [[nodiscard]] inline Six<V> multiply(const SixBySix<T>& m, const Six<V>& x) {
+  Six<V> y = scaled(m.column[0], V(x[0]));
+  for (int c = 1; c < 6; ++c) add_scaled(y, m.column[c], V(x[c]));
   return y;
 }
 template <class T> inline void add(SixBySix<T>& y, const SixBySix<T>& x) {

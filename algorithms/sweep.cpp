@@ -79,8 +79,18 @@ template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) c
 // Alg. 3, lines 4–8: y_e = Σ K_e^i a_i, y_i = 𝒦ᵢ ν_i.
 template <class T> template <class V> void Factor<T>::gather(const Six<V>* f, const V* u, V* y) const {
   for (Index r = 0; r < structure_->rows; ++r) y[r] = V{};
-  for (const Attachment& at : attachments_)
-    for (Index r = 0; r < at.rows; ++r) y[at.row + r] += dot(k_[at.first + r], f[at.step]);
+  for (const Attachment& at : attachments_) {
+    const Six<V> a = f[at.step];
+    Index r = 0;
+    for (; std::is_same_v<V, double> && r + 3 <= at.rows; r += 3) {  // three reductions at once
+      const Six<T>* const k = k_.data() + at.first + r;
+      const Six<V> p[4] = {product(k[0], a), product(k[1], a), product(k[2], a), Six<V>::zero()};
+      V sum[4];
+      sums(p, sum, 3);
+      for (Index s = 0; s < 3; ++s) y[at.row + r + s] += sum[s];
+    }
+    for (; r < at.rows; ++r) y[at.row + r] += dot(k_[at.first + r], a);
+  }
   for (const JointRows& j : joint_rows_)
     for (Index r = 0; r < j.rows; ++r)
       for (int c = 0; c < j.dofs; ++c) y[j.row + r] += u[j.column + c] * joint_k_[j.first + r * j.dofs + c];
@@ -95,35 +105,54 @@ template <class T> template <class V> void Factor<T>::project(const V* x, V* y, 
   gather(f, u, y);
 }
 
-template <class T> T Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
+// u += Eᵀτ
+template <class T> void Factor<T>::add_torques(const T* tau, T* u) const {
+  for (int i = 0; i < plan_->steps; ++i) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    const T* const t = tau + structure_->first_dof[plan_->body[i]];
+    if (n == 1) u[first] += t[0];
+    if (n <= 1) continue;
+    const Six<T> of_joint = load(t, n);
+    const Six<T>* const e = e_.data() + e_of_[i];
+    for (int c = 0; c < n; ++c) u[first + c] += dot(e[c], of_joint);
+  }
+}
+
+// ν = E u
+template <class T> void Factor<T>::velocities(const T* u, T* nu) const {
+  for (int i = 0; i < plan_->steps; ++i) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    T* const v = nu + structure_->first_dof[plan_->body[i]];
+    if (n == 1) v[0] = u[first];
+    if (n <= 1) continue;
+    const Six<T>* const e = e_.data() + e_of_[i];
+    Six<T> of_joint = scaled(e[0], u[first]);
+    for (int c = 1; c < n; ++c) add_scaled(of_joint, e[c], u[first + c]);
+    for (int c = 0; c < n; ++c) v[c] = of_joint[c];
+  }
+}
+
+template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
   Six<T>* const f = forces(work);
   T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
   scatter(x, f, u);
-  for (int i = 0; i < plan_->steps; ++i) {  // u += L⁻¹ τ
-    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
-    const T* const t = tau + structure_->first_dof[plan_->body[i]];
-    T v[6];
-    for (int c = 0; c < n; ++c) {
-      v[c] = t[c];
-      for (int d = 0; d < c; ++d) v[c] -= l_[36 * l_of_[i] + 6 * c + d] * v[d];
-      u[first + c] += v[c];
-    }
-  }
+  add_torques(tau, u);
   backward(f, u);
-  T energy(0);  // Σ u² / D
-  for (int c = 0; c < plan_->active_columns(); ++c) energy += u[c] * u[c] / d_inverse_[c];
-  if (nu == nullptr) return energy;
   forward(f, u);
   gather(f, u, y);
-  for (int i = 0; i < plan_->steps; ++i) {  // ν = L⁻ᵀ u
-    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
-    T* const v = nu + structure_->first_dof[plan_->body[i]];
-    for (int c = n; c-- > 0;) {
-      v[c] = u[first + c];
-      for (int d = c + 1; d < n; ++d) v[c] -= l_[36 * l_of_[i] + 6 * d + c] * v[d];
-    }
-  }
-  return energy;
+  velocities(u, nu);
+}
+
+template <class T> T Factor<T>::energy(const T* tau, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  std::fill(f, f + plan_->active(), Six<T>::zero());
+  std::fill(u, u + plan_->active_columns(), T(0));
+  add_torques(tau, u);
+  backward(f, u);
+  T sum(0);  // Σ u² / D
+  for (int c = 0; c < plan_->active_columns(); ++c) sum += u[c] * u[c] / d_inverse_[c];
+  return sum;
 }
 
 // Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ), from the roots outwards
@@ -164,7 +193,7 @@ template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const 
     }
 }
 
-#define DELASSUS_INSTANTIATE(T) template T Factor<T>::solve(const T*, const T*, T*, T*, T*) const; \
+#define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy(const T*, T*) const; \
   template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 DELASSUS_INSTANTIATE(Stochastic)

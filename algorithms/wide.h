@@ -10,56 +10,49 @@
 
 namespace delassus {
 
-/// An unevaluated sum hi + lo, |lo| ≤ ½ ulp(hi).
+/// An unevaluated sum hi + lo. It is not normalised: sums collect their rounding errors in lo, which stays within a few eps of
+/// the magnitudes added, so that the whole carries an error of eps² of them.
 struct DoubleDouble {
   double hi = 0, lo = 0;
   DoubleDouble() = default;
   DoubleDouble(double x) : hi(x) {}
   DoubleDouble(double h, double l) : hi(h), lo(l) {}
-  explicit operator double() const { return hi; }
+  explicit operator double() const { return hi + lo; }
 };
 
-/// Exact: a + b = sum + error, for any real type with lane-wise arithmetic.
+/// Exact: a + b = value + error, for any real type with lane-wise arithmetic.
 template <class R> struct Exact { R value, error; };
-template <class R> [[nodiscard]] inline Exact<R> two_sum(const R& a, const R& b) {
+template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> two_sum(const R& a, const R& b) {
   const R s = a + b, bb = s - a;
   return {s, (a - (s - bb)) + (b - bb)};
 }
-/// Exact when |a| ≥ |b|.
-template <class R> [[nodiscard]] inline Exact<R> fast_two_sum(const R& a, const R& b) {
-  const R s = a + b;
-  return {s, b - (s - a)};
+[[nodiscard]] inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
+[[nodiscard, gnu::always_inline]] inline Lanes8 fused(const Lanes8& a, const Lanes8& b, const Lanes8& c) {
+#ifdef __AVX512F__  // g++ 12 takes the loop apart
+  return _mm512_fmadd_pd(a, b, c);
+#else
+  Lanes8 d;
+  for (int l = 0; l < 8; ++l) d[l] = __builtin_fma(a[l], b[l], c[l]);
+  return d;
+#endif
 }
-[[nodiscard]] inline Exact<double> two_product(double a, double b) {
-  const double p = a * b;
-  return {p, __builtin_fma(a, b, -p)};
-}
-[[nodiscard]] inline Exact<Lanes8> two_product(const Lanes8& a, double b) {
-  const Lanes8 p = a * b;
-  Lanes8 e;
-  for (int l = 0; l < 8; ++l) e[l] = __builtin_fma(a[l], b, -p[l]);
-  return {p, e};
-}
-[[nodiscard]] inline Exact<Lanes8> two_product(const Lanes8& a, const Lanes8& b) {
-  const Lanes8 p = a * b;
-  Lanes8 e;
-  for (int l = 0; l < 8; ++l) e[l] = __builtin_fma(a[l], b[l], -p[l]);
-  return {p, e};
+/// x (y.hi + y.lo) as value + error, to eps² of it.
+template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> product(const R& x, const R& hi, const R& lo) {
+  const R p = x * hi;
+  return {p, fused(x, lo, fused(x, hi, R(-p)))};
 }
 
-inline DoubleDouble& operator+=(DoubleDouble& x, const DoubleDouble& y) {
+[[gnu::always_inline]] inline DoubleDouble& operator+=(DoubleDouble& x, const DoubleDouble& y) {
   const auto s = two_sum(x.hi, y.hi);
-  const auto r = fast_two_sum(s.value, s.error + (x.lo + y.lo));
-  return x = {r.value, r.error};
+  return x = {s.value, s.error + (x.lo + y.lo)};
 }
 inline DoubleDouble operator-(const DoubleDouble& x) { return {-x.hi, -x.lo}; }
 inline DoubleDouble& operator-=(DoubleDouble& x, const DoubleDouble& y) { return x += -y; }
 inline DoubleDouble operator+(DoubleDouble x, const DoubleDouble& y) { return x += y; }
 inline DoubleDouble operator-(DoubleDouble x, const DoubleDouble& y) { return x -= y; }
 inline DoubleDouble operator*(const DoubleDouble& x, double s) {
-  const auto p = two_product(x.hi, s);
-  const auto r = fast_two_sum(p.value, p.error + x.lo * s);
-  return {r.value, r.error};
+  const auto p = product(s, x.hi, x.lo);
+  return {p.value, p.error};
 }
 
 /// Six unevaluated sums.
@@ -68,24 +61,29 @@ template <> struct Six<DoubleDouble> {
   static Six zero() { return {Lanes8{}, Lanes8{}}; }
   DoubleDouble operator[](int k) const { return {hi[k], lo[k]}; }
 };
-inline void accumulate(Six<DoubleDouble>& y, const Lanes8& hi, const Lanes8& lo) {
-  const auto s = two_sum(y.hi, hi);
-  const auto r = fast_two_sum(s.value, Lanes8(s.error + (y.lo + lo)));
-  y = {r.value, r.error};
+[[gnu::always_inline]] inline void add(Six<DoubleDouble>& y, const Six<DoubleDouble>& x) {
+  const auto s = two_sum(y.hi, x.hi);
+  y = {s.value, s.error + (y.lo + x.lo)};
 }
-inline void add(Six<DoubleDouble>& y, const Six<DoubleDouble>& x) { accumulate(y, x.hi, x.lo); }
-inline void add_scaled(Six<DoubleDouble>& y, const Six<double>& x, const DoubleDouble& s) {
-  const auto p = two_product(x.v, s.hi);
-  accumulate(y, p.value, p.error + x.v * s.lo);
+[[nodiscard, gnu::always_inline]] inline Six<DoubleDouble> scaled(const Six<double>& x, const DoubleDouble& s) {
+  const auto p = product(x.v, Lanes8{} + s.hi, Lanes8{} + s.lo);
+  return {p.value, p.error};
 }
-inline void subtract_scaled(Six<DoubleDouble>& y, const Six<double>& x, const DoubleDouble& s) { add_scaled(y, x, -s); }
-[[nodiscard]] inline DoubleDouble dot(const Six<double>& x, const Six<DoubleDouble>& y) {
-  const auto p = two_product(x.v, y.hi);
-  const Lanes8 e = p.error + x.v * y.lo;
-  DoubleDouble sum(p.value[0], e[0]);
-  for (int k = 1; k < 6; ++k) sum += DoubleDouble(p.value[k], e[k]);
-  return sum;
+[[nodiscard]] inline Six<DoubleDouble> negated(const Six<DoubleDouble>& x) { return {-x.hi, -x.lo}; }
+[[gnu::always_inline]] inline void add_scaled(Six<DoubleDouble>& y, const Six<double>& x, const DoubleDouble& s) {
+  add(y, scaled(x, s));
 }
+[[gnu::always_inline]] inline void subtract_scaled(Six<DoubleDouble>& y, const Six<double>& x, const DoubleDouble& s) {
+  add_scaled(y, x, -s);
+}
+[[nodiscard, gnu::always_inline]] inline Six<DoubleDouble> product(const Six<double>& x, const Six<DoubleDouble>& y) {
+  const auto p = product(x.v, y.hi, y.lo);
+  return {p.value, p.error};
+}
+template <int... lane> [[nodiscard]] inline Six<DoubleDouble> picked(const Six<DoubleDouble>& a, const Six<DoubleDouble>& b) {
+  return {__builtin_shufflevector(a.hi, b.hi, lane...), __builtin_shufflevector(a.lo, b.lo, lane...)};
+}
+inline void sums(const Six<DoubleDouble> (&p)[4], DoubleDouble (&sum)[4], Index) { sums_in_lanes(p, sum); }
 
 template <class T> struct WideOf { using type = T; };
 template <> struct WideOf<double> { using type = DoubleDouble; };

@@ -89,16 +89,18 @@ struct Truth::System {
   [[nodiscard]] Residual evaluate(const VectorX<Quad>& nu, const VectorX<Quad>& lambda, const VectorX<Quad>& a) const {
     Residual r{zeros(nu.size()), zeros(lambda.size())};
     Workspace<Quad> work(residual.workspace());
-    residual.evaluate(nu.data(), lambda.data(), a.data(), r.r1.data(), r.r2.data(), work.data());
+    residual.evaluate(nu.data(), lambda.data(), static_cast<const Quad*>(nullptr), a.data(), r.r1.data(), r.r2.data(), work.data());
     return r;
   }
   /// ν = M⁻¹Jᵀλ; returns ‖ν‖²_M.
   double motion(const VectorX<Quad>& lambda, VectorX<Quad>& nu) const {
-    const VectorX<Quad> no_force = zeros(problem.structure->dofs());
-    VectorX<Quad> rate = zeros(lambda.size());
-    nu = no_force;
+    const VectorX<Quad> none = zeros(lambda.size());
+    nu = zeros(problem.structure->dofs());
+    const VectorX<Quad> force = evaluate(nu, lambda, none).r1;  // Jᵀλ
+    VectorX<Quad> rate = none;
     Workspace<Quad> work(M.workspace());
-    return static_cast<double>(M.solve(lambda.data(), no_force.data(), rate.data(), nu.data(), work.data()));
+    M.solve(none.data(), force.data(), rate.data(), nu.data(), work.data());
+    return static_cast<double>(M.energy(force.data(), work.data()));
   }
 };
 
@@ -190,7 +192,7 @@ VectorX<double> consistent_acceleration(const Problem<double>& problem, std::uin
   const VectorX<Quad> wide = nu.cast<Quad>(), none = zeros(s.rows);
   VectorX<Quad> r1 = zeros(s.dofs()), r2 = zeros(s.rows);
   Workspace<Quad> work(residual.workspace());
-  residual.evaluate(wide.data(), none.data(), none.data(), r1.data(), r2.data(), work.data());
+  residual.evaluate(wide.data(), none.data(), static_cast<const Quad*>(nullptr), none.data(), r1.data(), r2.data(), work.data());
   VectorX<double> a(s.rows);
   for (Index r = 0; r < s.rows; ++r) a[r] = -static_cast<double>(r2[r]);
   return a;
