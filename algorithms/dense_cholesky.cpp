@@ -17,7 +17,8 @@ template <class T> void DenseCholesky<T>::do_analyze() {
   damping_.analyze(s);
 }
 
-// M_kl = S_kᵀ H^c_j S_l for l a degree of freedom of joint j and k one of j's own or an ancestor's; lower triangle.
+// M_kl = S_kᵀ H^c_j S_l for l a degree of freedom of joint j and k one of j's own or an ancestor's: the lower triangle, and
+// within a joint what is above it.
 template <class T> void DenseCholesky<T>::assemble_M(const Problem<T>& problem) {
   const Structure& s = *this->structure();
   M_.setZero();
@@ -30,8 +31,6 @@ template <class T> void DenseCholesky<T>::assemble_M(const Problem<T>& problem) 
         for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) M_(l, k) = problem.S[k].dot(F);
       M_(l, l) += problem.armature[l];
     }
-    for (Index l = s.first_dof[j]; l < s.first_dof[j + 1]; ++l)  // within a joint, above the diagonal: not read
-      for (Index k = l + 1; k < s.first_dof[j + 1]; ++k) M_(l, k) = T(0);
   }
 }
 

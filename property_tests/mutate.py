@@ -37,7 +37,7 @@ FILES = {
     "weight_root.cpp": "lcaba_qr", "ladder.cpp": "ladder", "factor.cpp": "lcaba aba_sweep lcaba_refined",
     "kkt_residual.cpp": "lcaba_refined", "refinement.cpp": "lcaba_refined proximal", "lcaba_refined.cpp": "lcaba_refined",
     "refinement.h": "lcaba_refined proximal", "block_diagonal.h": "lcaba aba_sweep proximal", "lcaba_qr.cpp": "lcaba_qr",
-    "square_root_factor.cpp": "lcaba_qr", "square_root_solve.cpp": "lcaba_qr", "householder.h": "lcaba_qr",
+    "square_root_factor.cpp": "lcaba_qr", "square_root_solve.cpp": "lcaba_qr", "mass_root.cpp": "lcaba_qr", "householder.h": "lcaba_qr",
     "front_plan.cpp": "lcaba_qr", "weight_root.h": "lcaba_qr"}
 
 
@@ -184,6 +184,30 @@ def chosen(options, texts):
     return every[i - 1::n]
 
 
+def numbered(some):
+    """[(key, mutant)] in the order of lines; the key stays the same when lines are put in or left out elsewhere."""
+    count, out = {}, []
+    for m in sorted(some, key=lambda m: (m["file"], m["line"])):
+        same = m["file"], m["before"], m["after"]
+        count[same] = count.get(same, 0) + 1
+        out.append((same + (count[same],), m))
+    return out
+
+
+def judged_before(options, todo, equivalent):
+    """{key: mutant} of --json, without what is no mutant any more or to be judged again."""
+    if not (options.resume or options.again) or not os.path.exists(options.json):
+        return {}
+    now, done = dict(numbered(todo)), {}
+    for key, m in numbered(json.load(open(options.json))):
+        again = options.again and m["outcome"] == "survived" and key[:3] not in equivalent
+        if m["file"] not in options.files:
+            done[key] = m
+        elif key in now and not again:
+            done[key] = dict(m, line=now[key]["line"])
+    return done
+
+
 def run(options):
     copy = Copy(options.work, options.commit)
     texts = {name: copy.read(name) for name in options.files}
@@ -194,12 +218,8 @@ def run(options):
         print(len(todo), "mutants")
         return 0
     equivalent = read_equivalent(os.path.join(HERE, "mutants_equivalent.txt"))
-    key = lambda m: (m["file"], m["before"], m["after"], m["line"])
-    done = json.load(open(options.json)) if (options.resume or options.again) and os.path.exists(options.json) else []
-    if options.again:
-        done = [m for m in done if m["outcome"] != "survived" or m["file"] not in options.files or key(m)[:3] in equivalent]
-    known = {key(m) for m in done}
-    todo = [m for m in todo if key(m) not in known]
+    before = judged_before(options, todo, equivalent)
+    done, todo = list(before.values()), [m for key, m in numbered(todo) if key not in before]
     copy.configure()
     for name in options.files:
         of_file = [m for m in todo if m["file"] == name]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "generators/build.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {
@@ -30,6 +31,38 @@ Said asked(const OperatorRow& row, const Operator<double>& op, std::uint64_t see
 bool same(const Report& a, const Report& b) { return a.status == b.status && a.where == b.where && a.iterations == b.iterations; }
 bool same(const Said& a, const Said& b) { return same(a.report, b.report) && judge_bits(a.answer, b.answer).passed(); }
 
+template <class T> std::string forgotten(const OperatorRow& row, const Problem<double>& regular, const Damping<double>& given, bool held) {
+  const Problem<T> good = regular.template cast<T>();
+  const Damping<T> damping = given.template cast<T>(), hard = Damping<T>::uniform(good.structure->rows, T(0));
+  const Index tip = good.structure->dofs() - 1;
+  Problem<T> bad = good;
+  for (Index k = 0; k < 36; ++k) bad.H.back().data()[k] = T(0);
+  std::fill(bad.armature.begin(), bad.armature.end(), T(0));
+  const auto op = row.make<T>();
+  op->analyze(good.structure);
+  const MatrixX<T> x = vectors<T>(op->size(), 1, 1);
+  MatrixX<T> y = x;
+  Workspace<T> w(op->workspace(1));
+  std::string words;
+  const auto expect = [&](const std::string& when, const Report& r, Status status) {
+    if (words.empty() && (r.status != status || (status == Status::lost_pivot && r.where != tip)))
+      words = std::string(row.name) + (held ? ", tip held, " : ", ") + when + ": " + std::string(name(r.status)) + " at " + std::to_string(r.where);
+  };
+  const auto expect_all = [&](const std::string& when, const Report& updated, Status status) {
+    const bool of_M = status == Status::lost_pivot;
+    if (!row.applies || of_M) expect(when, updated, status);
+    if (row.applies) expect(when + ", apply", op->apply(x, y, w), of_M ? status : Status::ok);
+    if (row.solves) expect(when + ", solve", op->solve(x, y, w), status);
+  };
+  expect_all("singular M", op->update(bad, damping), Status::lost_pivot);
+  expect_all("its new damping", op->update_damping(damping), Status::lost_pivot);
+  expect_all("regular M", op->update(good, damping), Status::ok);
+  const Report hardened = op->update_damping(hard);  // not held, one joint has three hard rows: A is singular
+  if (held || !row.zero_damping) expect_all("hard rows", hardened, row.zero_damping || !row.solves ? Status::ok : Status::zero_damping);
+  expect_all("damped again", op->update_damping(damping), Status::ok);
+  return words;
+}
+
 }  // namespace
 
 Case with_partial_blocks(const Case& c, std::uint64_t seed) {
@@ -57,6 +90,17 @@ Case with_partial_blocks(const Case& c, std::uint64_t seed) {
   return make_case(c.problem, std::move(d), c.label + " with partial blocks", c.seed, c.exact);
 }
 
+Case without_freedoms() {
+  Structure s;
+  s.add_body(ground, 0);
+  s.add_body(0, 0);
+  s.add_link_constraint(3, {0, 1});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  for (auto& H : p.H) H.setIdentity();
+  for (auto& K : p.K) K.setOnes();
+  return make_case(std::move(p), Damping<double>::uniform(3, 0.5), "no freedoms", 1, true);
+}
+
 std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c) {
   const auto fresh = row.make<double>(), used = row.make<double>();
   fresh->analyze(c.problem.structure);
@@ -75,6 +119,16 @@ std::string trace_of_use(const OperatorRow& row, const Case& before, const Case&
   if (!same(used->update(c.problem, c.damping), updated) || !same(asked(row, *used, c.seed), expected)) return where + ": another answer";
   if (used->bytes() != fresh->bytes()) return where + ": other memory";
   return {};
+}
+
+std::string lost_pivot_forgotten(const OperatorRow& row, bool held) {
+  if (held && row.name == "lcaba") return {};  // M + JᵀRJ is regular
+  generators::Spec spec = generators::find_family("chain").make(3, 1);
+  spec.links.resize(1);
+  spec.links[0].bodies = {held ? 2 : 0};
+  const auto [problem, damping] = generators::build(spec);
+  const std::string words = forgotten<double>(row, problem, damping, held);
+  return words.empty() && std::get<Maker<Rational>>(row.makers) ? forgotten<Rational>(row, problem, damping, held) : words;
 }
 
 }  // namespace delassus::laws

@@ -1,4 +1,5 @@
-// Operators used for one problem after another, and dampings with blocks over parts of constraints.
+// Operators used for one problem after another, and problems that no family draws: blocks of the damping over parts of
+// constraints, no degree of freedom.
 #pragma once
 
 #include <string>
@@ -11,8 +12,16 @@ namespace delassus::laws {
 /// by `seed`; rows outside blocks keep their damping, if it is positive, else 1.
 [[nodiscard]] Case with_partial_blocks(const Case& c, std::uint64_t seed);
 
+/// Two welded bodies that three rows link: no degree of freedom, A = R⁻¹.
+[[nodiscard]] Case without_freedoms();
+
 /// What an operator still knows of its use for `before` when it is analyzed, updated, damped and asked for `c`; empty: the
 /// bits and reports are those of a fresh one.
 [[nodiscard]] std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c);
+
+/// A massless tip makes M singular: every phase names the degree of freedom of its joint, until there are better numbers.
+/// `held`: whether the tip carries the constraint, so that its step is active. A zero damping is forgotten the same way.
+/// In words what is not so, in double or in rational numbers; empty: nothing.
+[[nodiscard]] std::string lost_pivot_forgotten(const OperatorRow& row, bool held);
 
 }  // namespace delassus::laws

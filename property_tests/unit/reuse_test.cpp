@@ -14,15 +14,23 @@ TEST(Reuse, LeavesNoTrace) {
       for (const Case& c : cases) EXPECT_EQ(trace_of_use(row, before, c), "");
 }
 
+TEST(Reuse, LostPivotsAreForgottenWithBetterNumbersOnly) {
+  for (const OperatorRow& row : operators())
+    for (const bool held : {true, false}) EXPECT_EQ(lost_pivot_forgotten(row, held), "");
+}
+
+void expect_laws(const Case& c) {
+  c.damping.validate(*c.problem.structure);
+  for (const OperatorRow& row : operators())
+    for (const Outcome& o : check(row, c)) EXPECT_FALSE(o.failed()) << o.op << ", " << o.law << " on " << o.label << ": " << o.verdict.note;
+}
+
 TEST(Reuse, LawsHoldForPartialBlocks) {
   std::uint64_t seed = 1;
-  for (const char* family : {"generic", "joint_friction", "several_trees"}) {
-    const Case c = with_partial_blocks(make_case(family, 3, 1), seed++);
-    c.damping.validate(*c.problem.structure);
-    for (const OperatorRow& row : operators())
-      for (const Outcome& o : check(row, c)) EXPECT_FALSE(o.failed()) << o.op << ", " << o.law << " on " << o.label << ": " << o.verdict.note;
-  }
+  for (const char* family : {"generic", "joint_friction", "several_trees"}) expect_laws(with_partial_blocks(make_case(family, 3, 1), seed++));
 }
+
+TEST(Reuse, LawsHoldWithoutFreedoms) { expect_laws(without_freedoms()); }
 
 }  // namespace
 }  // namespace delassus::laws
