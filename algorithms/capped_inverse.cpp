@@ -58,7 +58,7 @@ template <class T, class F> Report CappedInverse<T, F>::update_damping(const Dam
   if (!undamped_.ok() || structure_->rows == 0) return undamped_;
   damping_.assign(damping);
   for (Index r = 0; r < structure_->rows; ++r) {
-    const T missing = least_[r] - damping_.entry(r);
+    const T missing = least_[r] - damping_.diagonal(r);  // 0 for rows of a block, which may be singular
     shift_[r] = missing > T(0) ? missing : T(0);
   }
   const Report inverted = weights_.assign_inverse(damping, shift_.data());

@@ -2,7 +2,8 @@
 // iterations, refinement from float and preconditioning are made of.
 //
 // What     (K)  M δν − Jᵀδλ = r₁,  J δν + R⁻¹δλ = r₂   with R⁻¹ replaced by   R₀⁻¹ = R⁻¹ + diag(s),
-//          s_r = max(0, d_r/g − R⁻¹_rr),  d_r ≥ (J M⁻¹Jᵀ)_rr, so that R₀ (J M⁻¹Jᵀ)_rr ≤ g whatever R is, hard rows included.
+//          s_r = max(0, d_r/g − R⁻¹_rr), d_r/g within blocks of R⁻¹ (they may be singular),  d_r ≥ (J M⁻¹Jᵀ)_rr, so that
+//          R₀ (J M⁻¹Jᵀ)_rr ≤ g whatever R is, hard rows included.
 // Formula  M_R₀ δν = r₁ + JᵀR₀ r₂,  δλ = R₀ (r₂ − J δν).
 // As iteration  λ ← λ + δλ on the residual of (K) contracts the error along an eigenvector of A (scaled by s) of
 //          eigenvalue μ by 1 / (1 + μ): the proximal method of multipliers. Slow in directions that only a small R⁻¹ holds.

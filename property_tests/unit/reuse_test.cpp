@@ -30,6 +30,13 @@ TEST(Reuse, LawsHoldForPartialBlocks) {
   for (const char* family : {"generic", "joint_friction", "several_trees"}) expect_laws(with_partial_blocks(make_case(family, 3, 1), seed++));
 }
 
+TEST(Reuse, LawsHoldForASingularBlock) {
+  Case c = make_case("hard", 3, 1);
+  const Index rows = c.problem.structure->link_constraints.at(0).rows, row = c.problem.structure->link_constraints[0].row;
+  c.damping.blocks.push_back({row, MatrixX<double>::Ones(rows, rows)});
+  expect_laws(c);
+}
+
 TEST(Reuse, LawsHoldWithoutFreedoms) { expect_laws(without_freedoms()); }
 
 }  // namespace
