@@ -1,4 +1,4 @@
-// One kernel call per column, or per eight columns where the scalar has lanes.
+// Columns of right-hand sides: one kernel call per column, or per eight columns where the scalar has lanes.
 #pragma once
 
 #include <algorithm>
@@ -55,5 +55,21 @@ template <class T, class Kernel> void for_columns(ConstRef<T> in, Ref<T> out, T*
   for (Index c = 0; c < k; ++c)
     kernel(static_cast<const T*>(in.data() + c * in.outerStride()), out.data() + c * out.outerStride(), work);
 }
+
+/// What operators share that solve to an accuracy, one column after the other.
+template <class T> class ColumnByColumn : public Operator<T> {
+ protected:
+  /// f = A⁻¹ a for m numbers each, as Operator::solve.
+  virtual Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const = 0;
+
+ private:
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const final { return do_solve_to(a, f, Accuracy::full(), workspace); }
+  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const final {
+    Report worst;
+    for (Index c = 0; c < a.cols(); ++c)
+      worst = worse(worst, solve_column(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), wanted, workspace));
+    return worst;
+  }
+};
 
 }  // namespace delassus

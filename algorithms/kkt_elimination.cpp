@@ -118,19 +118,12 @@ Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f) co
 }
 
 template <class T, Dependent policy>
-Report KktEliminationWith<T, policy>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
+Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   if (!undamped_.ok()) return undamped_;
   if (!factored_.ok()) return factored_;
-  Report worst;
-  for (Index c = 0; c < a.cols(); ++c) {
-    const T* const right = a.data() + c * a.outerStride();
-    T* const force = f.data() + c * f.outerStride();
-    Report report = refinement_.solve(right, force, wanted, {max_steps}, [this](auto... args) { correct(args...); }, workspace);
-    const Report consistent = check_dependent(right, force);
-    if (!consistent.ok()) report = consistent;
-    worst = worse(worst, report);
-  }
-  return worst;
+  const Report report = refinement_.solve(a, f, wanted, {max_steps}, [this](auto... args) { correct(args...); }, workspace);
+  const Report consistent = check_dependent(a, f);
+  return consistent.ok() ? report : consistent;
 }
 
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_workspace(Index) const {

@@ -15,14 +15,14 @@
 // Source   paper, section II; refinement.h.
 #pragma once
 
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 #include "algorithms/refinement.h"
 
 namespace delassus {
 
 enum class Dependent : std::uint8_t { left_out, refused };
 
-template <class T, Dependent policy> class KktEliminationWith : public Operator<T> {
+template <class T, Dependent policy> class KktEliminationWith : public ColumnByColumn<T> {
  public:
   static constexpr int max_steps = 5;
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
@@ -32,10 +32,7 @@ template <class T, Dependent policy> class KktEliminationWith : public Operator<
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
-    return do_solve_to(a, f, Accuracy::full(), workspace);
-  }
-  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 

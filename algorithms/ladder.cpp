@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "algorithms/columns.h"
-
 namespace delassus {
 
 namespace {
@@ -97,29 +95,24 @@ template <class T> Report Ladder<T>::prepare(Rung& rung) const {
   return rung.updated;
 }
 
-template <class T> Report Ladder<T>::climb(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
+template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   const Index m = this->size();
+  const Eigen::Map<const MatrixX<T>> right(a, m, 1);
   Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
   Workspace<T> rest(workspace + padded(m), do_workspace(1) - padded(m));
   Report best{Status::not_supported};
   for (Rung& rung : rungs_) {
     Report report = prepare(rung);
-    if (report.ok()) report = rung.op->solve(a, answer, wanted, rest);
+    if (report.ok()) report = rung.op->solve(right, answer, wanted, rest);
     report.rung = rung.row->name;
     const bool has_answer = report.ok() || report.status == Status::not_converged;
     const bool better = best.status != Status::not_converged ||
                         (report.error_bound >= 0 && !(report.error_bound >= best.error_bound));
-    if (report.ok() || (has_answer && better)) f = answer;
+    if (report.ok() || (has_answer && better)) std::copy_n(workspace, m, f);
     if (report.ok()) return report;
     if (has_answer ? better : best.status == Status::not_supported || best.status == Status::zero_damping) best = report;
   }
   return best;
-}
-
-template <class T> Report Ladder<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
-  Report worst;
-  for (Index c = 0; c < a.cols(); ++c) worst = worse(worst, climb(a.col(c), f.col(c), wanted, workspace));
-  return worst;
 }
 
 template <class T> Index Ladder<T>::do_workspace(Index) const {

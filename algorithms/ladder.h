@@ -15,11 +15,11 @@
 
 #include <mutex>
 
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 
 namespace delassus {
 
-template <class T> class Ladder : public Operator<T> {
+template <class T> class Ladder : public ColumnByColumn<T> {
  public:
   static constexpr Index max_dense_rows = 1000;
 
@@ -27,10 +27,7 @@ template <class T> class Ladder : public Operator<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
-    return do_solve_to(a, f, Accuracy::full(), workspace);
-  }
-  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
@@ -47,7 +44,6 @@ template <class T> class Ladder : public Operator<T> {
   Report first_usable();
   /// Brings a rung up to the numbers of the last update.
   Report prepare(Rung& rung) const;
-  Report climb(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const;
 
   mutable std::vector<Rung> rungs_;
   mutable std::mutex preparing_;

@@ -37,12 +37,8 @@ Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy want
   return refinement_.solve(a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
 }
 
-template <class T>
-Report LcabaRefined<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
-  Report worst;
-  for (Index c = 0; c < a.cols(); ++c)
-    worst = worse(worst, solve_with_motion(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), nullptr, wanted, workspace));
-  return worst;
+template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return solve_with_motion(a, f, nullptr, wanted, workspace);
 }
 
 template <class T> Index LcabaRefined<T>::do_workspace(Index) const {

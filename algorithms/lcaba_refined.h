@@ -10,12 +10,12 @@
 // Source   paper, Algorithm 4; refinement.h.
 #pragma once
 
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 #include "algorithms/refinement.h"
 
 namespace delassus {
 
-template <class T> class LcabaRefined : public Operator<T> {
+template <class T> class LcabaRefined : public ColumnByColumn<T> {
  public:
   static constexpr int max_steps = 5;
 
@@ -26,10 +26,7 @@ template <class T> class LcabaRefined : public Operator<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
-    return do_solve_to(a, f, Accuracy::full(), workspace);
-  }
-  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 

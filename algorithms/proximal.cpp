@@ -18,13 +18,9 @@ template <class T, class F> Report ProximalWith<T, F>::do_update_damping(const D
   return factored_ = undamped_.ok() ? inverse_.update_damping(damping) : undamped_;
 }
 
-template <class T, class F> Report ProximalWith<T, F>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
+template <class T, class F> Report ProximalWith<T, F>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   if (!factored_.ok()) return factored_;
-  Report worst;
-  for (Index c = 0; c < a.cols(); ++c)
-    worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), wanted,
-                                           {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace));
-  return worst;
+  return refinement_.solve(a, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace);
 }
 
 template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index) const {

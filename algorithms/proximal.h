@@ -13,12 +13,12 @@
 #pragma once
 
 #include "algorithms/capped_inverse.h"
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 #include "algorithms/refinement.h"
 
 namespace delassus {
 
-template <class T, class F> class ProximalWith : public Operator<T> {
+template <class T, class F> class ProximalWith : public ColumnByColumn<T> {
  public:
   static constexpr int max_steps = 64;
   ProximalWith() : inverse_(std::is_same_v<F, float> ? 0x1p13 : 0x1p20) {}
@@ -27,10 +27,7 @@ template <class T, class F> class ProximalWith : public Operator<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
-    return do_solve_to(a, f, Accuracy::full(), workspace);
-  }
-  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
