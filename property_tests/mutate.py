@@ -2,8 +2,9 @@
 """Mutation testing of the operators' sources: one change at a time (mutations.py) in a copy of a commit, which the program
 mutant_killer must notice.
 
-    property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--shard i/n]
+    property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--batch N]
                              [--json FILE [--resume | --again]] [--list]
+    property_tests/mutate.py --table --json FILE
 
 The copy and its build stand in DIR; the working tree is only read. The mutants of a file are built many at once
 (mutant_batch.py). A mutant is killed by a failing or crashing killer or by its time limit; one that does not compile is
@@ -36,7 +37,8 @@ FILES = {
     "capped_inverse.cpp": "proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float",
     "weight_root.cpp": "lcaba_qr", "ladder.cpp": "ladder", "factor.cpp": "lcaba aba_sweep lcaba_refined",
     "kkt_residual.cpp": "lcaba_refined", "refinement.cpp": "lcaba_refined proximal", "lcaba_refined.cpp": "lcaba_refined",
-    "refinement.h": "lcaba_refined proximal", "block_diagonal.h": "lcaba aba_sweep proximal", "lcaba_qr.cpp": "lcaba_qr",
+    "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "elimination.h": "lcaba aba_sweep lcaba_refined",
+    "vectors.h": "lcaba_refined", "wide.h": "lcaba_refined", "refinement.h": "lcaba_refined proximal", "block_diagonal.h": "lcaba aba_sweep proximal", "lcaba_qr.cpp": "lcaba_qr",
     "square_root_factor.cpp": "lcaba_qr", "square_root_solve.cpp": "lcaba_qr", "mass_root.cpp": "lcaba_qr", "householder.h": "lcaba_qr",
     "front_plan.cpp": "lcaba_qr", "weight_root.h": "lcaba_qr"}
 
@@ -154,7 +156,6 @@ def summary(done, equivalent):
     """Prints the table and the survivors; the number of unexplained ones."""
     unexplained = []
     print("| file | mutants | not compiled | killed | equivalent | survived | share killed |\n|---|---|---|---|---|---|---|")
-    totals = [0] * 5
     for name in [*FILES, "all"]:
         of_file = [m for m in done if name in ("all", m["file"])]
         survivors = [m for m in of_file if m["outcome"] == "survived"]
@@ -180,8 +181,7 @@ def chosen(options, texts):
     if options.sample:
         every = sorted(random.Random(options.seed).sample(every, min(options.sample, len(every))),
                        key=lambda m: (list(FILES).index(m["file"]), m["line"]))
-    i, n = map(int, options.shard.split("/"))
-    return every[i - 1::n]
+    return every
 
 
 def numbered(some):
@@ -208,7 +208,7 @@ def judged_before(options, todo, equivalent):
     return done
 
 
-def run(options):
+def run(options, equivalent):
     copy = Copy(options.work, options.commit)
     texts = {name: copy.read(name) for name in options.files}
     todo = chosen(options, texts)
@@ -217,12 +217,13 @@ def run(options):
             print("%s:%d %s\n- %s\n+ %s" % (m["file"], m["line"], m["kind"], m["before"], m["after"]))
         print(len(todo), "mutants")
         return 0
-    equivalent = read_equivalent(os.path.join(HERE, "mutants_equivalent.txt"))
     before = judged_before(options, todo, equivalent)
     done, todo = list(before.values()), [m for key, m in numbered(todo) if key not in before]
     copy.configure()
     for name in options.files:
         of_file = [m for m in todo if m["file"] == name]
+        if not of_file:
+            continue
         made = copy.make()
         unchanged = copy.kill(FILES[name]) if made.returncode == 0 else [("compiler", made.stdout[-2000:])]
         if unchanged[0][0] != "survived":
@@ -246,21 +247,22 @@ def run(options):
 
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--work", required=True, help="folder for the copy and its build")
+    p.add_argument("--work", help="folder for the copy and its build")
     p.add_argument("--commit", default="HEAD", help="whose sources are mutated (HEAD)")
     p.add_argument("--files", nargs="+", default=list(FILES), choices=list(FILES))
     p.add_argument("--sample", type=int, default=0, help="that many, drawn at random; 0: all")
     p.add_argument("--seed", type=int, default=1)
-    p.add_argument("--shard", default="1/1")
     p.add_argument("--batch", type=int, default=40, help="mutants in one program")
     p.add_argument("--json", help="all outcomes, rewritten after every batch")
     p.add_argument("--resume", action="store_true", help="keep the outcomes in --json")
     p.add_argument("--again", action="store_true", help="the same, but judge its unexplained survivors again")
+    p.add_argument("--table", action="store_true", help="print what --json holds and stop")
     p.add_argument("--list", action="store_true", help="print the mutants and stop")
     options = p.parse_args()
-    if not re.fullmatch(r"[1-9]\d*/[1-9]\d*", options.shard):
-        p.error("--shard i/n")
-    sys.exit(run(options))
+    equivalent = read_equivalent(os.path.join(HERE, "mutants_equivalent.txt"))
+    if options.table:
+        sys.exit(1 if summary(json.load(open(options.json)), equivalent) else 0)
+    sys.exit(run(options, equivalent))
 
 
 if __name__ == "__main__":
