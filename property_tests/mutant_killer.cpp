@@ -1,6 +1,6 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
-// every number of a plan, the functions of Factor and KktResidual, refusals of misuse, that what an operator was used for
-// before leaves no trace, and that a lost pivot is named in every phase until there are better numbers.
+// every number of a plan, the functions of Factor, KktResidual and Refinement, refusals of misuse, that what an operator was
+// used for before leaves no trace, and that a lost pivot is named in every phase until there are better numbers.
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -25,9 +25,11 @@
 #include "generators/build.h"
 #include "property_tests/allocations.h"
 #include "property_tests/kernels.h"
+#include "property_tests/known.h"
 #include "property_tests/laws.h"
 #include "property_tests/misuse.h"
 #include "property_tests/plan_model.h"
+#include "property_tests/refinement_model.h"
 #include "property_tests/reuse.h"
 #include "property_tests/summary.h"
 
@@ -81,6 +83,9 @@ std::vector<Check> checks(const std::vector<std::string_view>& names) {
   }
   for (const laws::Case& c : cases)
     if (c.exact) all.push_back([&c] { return laws::kernel_wrong(c); });
+  for (const laws::Case& c : cases)
+    if (c.exact && c.rows() > 0 && c.problem.structure->dofs() > 0 && damped(c) && condition(c) < 1e4)
+      all.push_back([&c] { return laws::refinement_wrong(c); });
   for (const laws::Case& c : cases)
     for (const std::string_view op_name : names)
       for (const laws::LawRow& law : laws::laws())

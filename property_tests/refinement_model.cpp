@@ -1,0 +1,172 @@
+#include "property_tests/refinement_model.h"
+
+#include <cmath>
+#include <limits>
+
+#include "algorithms/refinement.h"
+#include "property_tests/route.h"
+
+namespace delassus::laws {
+namespace {
+
+using Vector = MatrixX<Quad>;
+using reference::product;
+
+double largest(const Vector& x) {
+  double most = 0;
+  for (Index r = 0; r < x.rows(); ++r) most = std::max(most, std::abs(static_cast<double>(x(r, 0))));
+  return most;
+}
+
+double dot_product(const Vector& x, const Vector& y) { return static_cast<double>(product<Quad>(x.transpose(), y)(0, 0)); }
+
+/// What a correction leaves of the error of ν and of λ, and how the refinement is called.
+struct Asked {
+  double motion, force;
+  double wanted = 0;
+  int most = 100;
+  bool patient = false;
+};
+
+struct Expected {
+  Status status = Status::ok;
+  Index iterations = 0;
+  double bound = -1, estimate = -1;
+  double force = 1, motion = 1;  // errors left, relative
+};
+
+class Model {
+ public:
+  explicit Model(const Case& c)
+      : exact_(reference::dense(c.problem.cast<Quad>(), c.damping.cast<Quad>())), a_(converted<Quad>(vectors<double>(c.rows(), 1, c.seed))),
+        lambda_(reference::dense_solve(exact_, a_)), nu_(product<Quad>(exact_.M_inv_Jt, lambda_)), M_(exact_.M), R_inverse_(exact_.R_inverse) {}
+
+  /// The solution of (K).
+  void correct(const double* r1, const double* r2, double* d_nu, double* d_lambda, const Asked& asked) const {
+    Vector right1(nu_.rows(), 1), right2(lambda_.rows(), 1);
+    for (Index k = 0; k < right1.rows(); ++k) right1(k, 0) = Quad(r1[k]);
+    for (Index k = 0; k < right2.rows(); ++k) right2(k, 0) = Quad(r2[k]);
+    const Vector force = reference::dense_solve(exact_, Vector(right2 - product<Quad>(exact_.M_inv_Jt.transpose(), right1)));
+    const Vector motion = M_.solve(Vector(right1 + product<Quad>(exact_.J.transpose(), force)));
+    for (Index k = 0; k < motion.rows(); ++k) d_nu[k] = (1 - asked.motion) * static_cast<double>(motion(k, 0));
+    for (Index k = 0; k < force.rows(); ++k) d_lambda[k] = (1 - asked.force) * static_cast<double>(force(k, 0));
+  }
+
+  /// refinement.h, in the order of its paragraphs «How» and «Certificate».
+  [[nodiscard]] Expected expected(const Asked& asked) const {
+    Expected e{.force = asked.force, .motion = asked.motion};
+    double size = 1, before = 1, left = 1;
+    double motion = 1 - asked.motion, force = 1 - asked.force, energy = 1;  // of the last correction
+    while (std::isfinite(asked.wanted)) {
+      const bool done = left <= unit_roundoff<double>;
+      if (done || asked.wanted > 0) e.bound = bound(e);
+      if (done || (asked.wanted > 0 && e.bound <= asked.wanted)) break;
+      if (e.iterations == asked.most || (e.iterations >= 2 && size >= 0.5 && before >= 0.5)) {
+        e.bound = bound(e);
+        e.status = Status::not_converged;
+        break;
+      }
+      const Vector d_nu = nu_ * Quad((1 - asked.motion) * e.motion), d_lambda = lambda_ * Quad((1 - asked.force) * e.force);
+      const double at_stake = largest(weighted(r2(e)));
+      const double square = dot_product(r1(e), d_nu) + dot_product(r2(e), d_lambda);
+      e.motion *= asked.motion;
+      e.force *= asked.force;
+      const double of_force = std::abs(1 - e.force);  // λ of the iterate, relative to λ
+      const double now = std::sqrt(std::abs(square)) / std::sqrt(std::abs(of_force * dot_product(lambda_, a_)));
+      before = size;
+      size = std::max(largest(d_lambda) / (of_force * largest(lambda_)), now);
+      const double rho = std::min(1.0, std::max({largest(d_nu) / (motion * largest(nu_)), largest(d_lambda) / (force * largest(lambda_)), now / energy}));
+      const double gained = std::max(at_stake / (of_force * largest(lambda_)), size <= 4 * unit_roundoff<double> ? 0 : size);
+      left = asked.patient ? size * std::max(1.0, rho / (1 - rho)) : gained * rho / (1 - rho);
+      motion = largest(d_nu) / largest(nu_);
+      force = largest(d_lambda) / largest(lambda_);
+      energy = now;
+      e.estimate = size;
+      ++e.iterations;
+    }
+    if (e.status == Status::ok && asked.wanted > 0 && e.bound > asked.wanted) e.status = Status::not_converged;
+    return e;
+  }
+
+  [[nodiscard]] MatrixX<double> right() const { return converted<double>(a_); }
+  [[nodiscard]] Vector lambda(const Expected& e) const { return lambda_ * Quad(1 - e.force); }
+  [[nodiscard]] Vector nu(const Expected& e) const { return nu_ * Quad(1 - e.motion); }
+  [[nodiscard]] Index freedoms() const { return nu_.rows(); }
+
+ private:
+  Vector r1(const Expected& e) const { return product<Quad>(exact_.M, nu_) * Quad(e.motion) - product<Quad>(exact_.J.transpose(), lambda_) * Quad(e.force); }
+  Vector r2(const Expected& e) const { return product<Quad>(exact_.J, nu_) * Quad(e.motion) + product<Quad>(exact_.R_inverse, lambda_) * Quad(e.force); }
+  Vector weighted(const Vector& x) const { return R_inverse_.solve(x); }
+  double bound(const Expected& e) const {
+    const double B = std::sqrt(dot_product(r1(e), M_.solve(r1(e))) + dot_product(r2(e), weighted(r2(e))));
+    const double t = B / std::sqrt((1 - e.force) * dot_product(lambda_, a_));
+    return t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<double>;
+  }
+
+  reference::Dense<Quad> exact_;
+  Vector a_, lambda_, nu_;
+  reference::PivotedLdlt<Quad> M_, R_inverse_;
+};
+
+/// Right to half the digits: what is compared is itself a residual. Near eps only its being small counts.
+bool about(double got, double expected) {
+  if (expected < 0) return got < 0;
+  if (expected < 1e3 * unit_roundoff<double>) return got >= 0 && got < 2e3 * unit_roundoff<double>;
+  const Quad error = Quad(got) - Quad(expected), size(expected);
+  return judge(MatrixX<Quad>::Constant(1, 1, error), MatrixX<Quad>::Constant(1, 1, size), unit_roundoff<float>, "itself").passed();
+}
+
+std::string differs(const Model& model, const Refinement<double>& refinement, const Asked& asked, Workspace<double>& work) {
+  const Expected expected = model.expected(asked);
+  const MatrixX<double> a = model.right();
+  MatrixX<double> f(a.rows(), 1), nu(model.freedoms(), 1);
+  const auto correct = [&](const double* r1, const double* r2, double* d_nu, double* d_lambda, double*) { model.correct(r1, r2, d_nu, d_lambda, asked); };
+  const Report r = refinement.solve(a.data(), f.data(), {asked.wanted}, {asked.most, asked.patient}, correct, work.data(), nu.data());
+  if (r.status != expected.status) return "status " + std::string(name(r.status));
+  if (r.iterations != expected.iterations) return std::to_string(r.iterations) + " steps instead of " + std::to_string(expected.iterations);
+  if (!about(r.error_bound, expected.bound) || (r.error_bound >= 0 && r.error_bound < 2 * unit_roundoff<double>))
+    return "bound " + std::to_string(r.error_bound / expected.bound) + " times what it should be";
+  if (!about(r.error_estimate, expected.estimate)) return "estimate " + std::to_string(r.error_estimate) + " instead of " + std::to_string(expected.estimate);
+  const auto close = [](const MatrixX<double>& got, const Vector& wanted) {
+    return judge(converted<Quad>(got) - wanted, MatrixX<Quad>::Constant(got.rows(), 1, Quad(largest(wanted))), unit_roundoff<double>, "largest").passed();
+  };
+  if (!close(f, model.lambda(expected))) return "force";
+  return close(nu, model.nu(expected)) ? "" : "motion";
+}
+
+std::string not_finite_missed(const Case& c, const Model& model, const Refinement<double>& refinement, Workspace<double>& work) {
+  for (const int bad : {0, 1, 2})
+    for (const bool motion : {true, false}) {
+      int calls = 0;
+      MatrixX<double> a = model.right(), f = a;
+      const auto correct = [&](const double* r1, const double* r2, double* d_nu, double* d_lambda, double*) {
+        model.correct(r1, r2, d_nu, d_lambda, {0.5, 0.5});
+        if (calls++ == bad) (motion ? d_nu[0] : d_lambda[c.rows() - 1]) = std::numeric_limits<double>::quiet_NaN();
+      };
+      const Report r = refinement.solve(a.data(), f.data(), Accuracy::full(), {100}, correct, work.data());
+      if (r.status != Status::not_finite) return "a NaN in correction " + std::to_string(bad) + ": " + std::string(name(r.status));
+    }
+  return {};
+}
+
+}  // namespace
+
+std::string refinement_wrong(const Case& c) {
+  const Model model(c);
+  Refinement<double> refinement;
+  refinement.analyze(c.problem.structure);
+  if (!refinement.update(c.problem).ok()) return "update on " + c.label;
+  refinement.update_damping(c.damping);
+  Workspace<double> work(refinement.workspace(0));
+  work.fill(std::numeric_limits<double>::quiet_NaN());
+  const Asked calls[] = {{0.5, 0.5}, {0.25, 0.25}, {0.75, 0.75}, {0, 0}, {0.5, 0.5, 0, 100, true}, {0.75, 0.75, 0, 200, true}, {0.25, 0.25, 0, 100, true},
+                         {0.5, 0.5, 1e-3}, {0.125, 0.25, 1e-7}, {0.5, 0.125, 1e-5}, {0.5, 0.5, 1e-30}, {0.5, 0.25, 0, 3}, {0.125, 0.5, 1e-9, 3}, {0.5, 0.5, 0, 0},
+                         {-2, -2}, {0.25, 0.25, std::numeric_limits<double>::infinity()}};
+  for (const Asked& asked : calls) {
+    const std::string words = differs(model, refinement, asked, work);
+    if (!words.empty()) return "Refinement, call " + std::to_string(&asked - calls) + ", " + words + " on " + c.label;
+  }
+  return not_finite_missed(c, model, refinement, work);
+}
+
+}  // namespace delassus::laws

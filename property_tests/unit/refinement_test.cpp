@@ -1,0 +1,17 @@
+// Refinement against a model of it.
+#include <gtest/gtest.h>
+
+#include "property_tests/refinement_model.h"
+#include "property_tests/reuse.h"
+
+namespace delassus::laws {
+namespace {
+
+TEST(Refinement, DoesWhatItsHeaderSays) {
+  for (const char* family : {"generic", "chain", "several_trees", "joint_friction", "block_damping", "random_tree"})
+    for (const Index n : {2, 3}) EXPECT_EQ(refinement_wrong(make_case(family, n, 1)), "");
+  EXPECT_EQ(refinement_wrong(with_partial_blocks(make_case("generic", 4, 1), 1)), "");
+}
+
+}  // namespace
+}  // namespace delassus::laws
