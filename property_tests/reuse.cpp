@@ -28,6 +28,22 @@ Said asked(const OperatorRow& row, const Operator<double>& op, std::uint64_t see
   return said;
 }
 
+/// Whether it writes behind the workspace it asked for.
+bool oversteps(const OperatorRow& row, const Operator<double>& op) {
+  constexpr Index behind = 64;
+  for (const Index columns : {1, 2, 9}) {
+    const Index size = op.workspace(columns);
+    const MatrixX<double> x = vectors<double>(op.size(), columns, 1);
+    MatrixX<double> y = x;
+    Workspace<double> memory(size + behind), w(memory.data(), size);
+    memory.fill(0.375);
+    if (row.applies) static_cast<void>(op.apply(x, y, w));
+    if (row.solves) static_cast<void>(op.solve(x, y, w));
+    if (std::any_of(memory.data() + size, memory.data() + size + behind, [](double v) { return v != 0.375; })) return true;
+  }
+  return false;
+}
+
 bool same(const Report& a, const Report& b) { return a.status == b.status && a.where == b.where && a.iterations == b.iterations; }
 bool same(const Said& a, const Said& b) { return same(a.report, b.report) && judge_bits(a.answer, b.answer).passed(); }
 
@@ -128,6 +144,7 @@ std::string trace_of_use(const OperatorRow& row, const Case& before, const Case&
   const std::string where = std::string(row.name) + " after " + before.label + " on " + c.label;
   if (!same(used->update_damping(c.damping), updated) || !same(asked(row, *used, c.seed), expected)) return where + ": another answer at a new damping";
   if (!same(used->update(c.problem, c.damping), updated) || !same(asked(row, *used, c.seed), expected)) return where + ": another answer";
+  if (oversteps(row, *used)) return where + ": written behind the workspace";
   if (used->bytes() != fresh->bytes()) return where + ": other memory";
   return {};
 }

@@ -16,7 +16,7 @@ namespace delassus::laws {
 [[nodiscard]] Case without_freedoms();
 
 /// What an operator still knows of its use for `before` when it is analyzed, updated, damped and asked for `c`; empty: the
-/// bits and reports are those of a fresh one.
+/// bits and reports are those of a fresh one, and nothing was written behind the workspace.
 [[nodiscard]] std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c);
 
 /// A massless tip makes M singular: every phase names the degree of freedom of its joint, until there are better numbers.

@@ -8,7 +8,7 @@ namespace delassus::laws {
 namespace {
 
 TEST(Refinement, DoesWhatItsHeaderSays) {
-  for (const char* family : {"generic", "chain", "several_trees", "joint_friction", "block_damping", "random_tree"})
+  for (const char* family : {"generic", "chain", "several_trees", "joint_friction", "block_damping", "random_tree", "hard"})
     for (const Index n : {2, 3}) EXPECT_EQ(refinement_wrong(make_case(family, n, 1)), "");
   EXPECT_EQ(refinement_wrong(make_case("chain", 12, 1)), "");
   EXPECT_EQ(refinement_wrong(without_freedoms()), "");
