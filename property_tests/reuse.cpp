@@ -138,7 +138,7 @@ std::string trace_of_use(const OperatorRow& row, const Case& before, const Case&
   static_cast<void>(used->update(before.problem, before.damping));
   static_cast<void>(asked(row, *used, before.seed));
   used->analyze(c.problem.structure);
-  const Case blocks = with_partial_blocks(c, c.seed);
+  const Case blocks = with_partial_blocks(c, c.seed + 1);
   static_cast<void>(used->update(blocks.problem, blocks.damping));
   static_cast<void>(asked(row, *used, c.seed));
   const std::string where = std::string(row.name) + " after " + before.label + " on " + c.label;

@@ -8,7 +8,8 @@ namespace {
 
 TEST(Reuse, LeavesNoTrace) {
   const Case cases[] = {make_case("generic", 5, 1), make_case("chain", 2, 1), make_case("several_trees", 4, 1), make_case("block_damping", 3, 1),
-                        make_case("hard", 3, 1), make_case("no_rows", 4, 1), make_case("joint_friction", 4, 1)};
+                        make_case("hard", 3, 1), make_case("no_rows", 4, 1), make_case("joint_friction", 4, 1),
+                        with_partial_blocks(make_case("generic", 4, 1), 1)};
   for (const OperatorRow& row : operators())
     for (const Case& before : cases)
       for (const Case& c : cases) EXPECT_EQ(trace_of_use(row, before, c), "");
