@@ -137,12 +137,20 @@ double size_of(const Constraint& c, const Poses<double>& at) {
   return size;
 }
 
+/// Joints whose rounding reaches the errors of a constraint: those on the ways from its bodies to their roots, and itself.
+int joints_of(const Loops& loops, const Constraint& c) {
+  int joints = 1;
+  for (const Index end : {c.a.body, c.b.body})
+    for (Index i = end; i != ground; i = loops.structure->parent[i]) ++joints;
+  return joints;
+}
+
 /// @throws ModelError for the loop whose remaining error is largest against what is accepted, if any is.
 void check_closed(const Loops& loops, const VectorX<double>& e, const Poses<double>& at, const std::string& file) {
   Index row = 0;
   for (const Constraint& c : loops.model.constraints) {
     const Index m = row_count(loops.model, c);
-    const double worst = largest(e.segment(row, m)), accepted = 1e-9 * size_of(c, at);
+    const double worst = largest(e.segment(row, m)), accepted = 30 * unit_roundoff<double> * joints_of(loops, c) * size_of(c, at);
     row += m;
     if (worst <= accepted) continue;
     std::ostringstream found, limit;

@@ -63,8 +63,9 @@ struct Assembly {
 };
 /// Newton's method on the constraints marked `loop`: moves q by the least-squares step −J⁺φ over the trees they touch,
 /// halved while the error does not fall, until it no longer falls. Joint limits are not looked at. Dense: cost per step
-/// O(rows² · dofs) of these trees. @throws ModelError naming the constraint when one stays above 1e-9 · size, size
-/// being the largest length that enters its error (at least 1); std::logic_error when q does not fit.
+/// O(rows² · dofs) of these trees. @throws ModelError naming the constraint when one stays above 30 eps · joints · size:
+/// the joints on its way to the roots, and the largest length that enters its error (at least 1); std::logic_error when q
+/// does not fit.
 [[nodiscard]] Assembly assemble(const Model& model, const VectorX<double>& q, const std::string& file);
 
 }  // namespace delassus

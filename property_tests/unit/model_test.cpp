@@ -223,7 +223,7 @@ TEST(assembly, reaches_the_stretched_configuration) {
   Model m = four_bar();
   m.constraints[0].b.placement.translation = {4.5, 0, 0};  // the sum of the links: J loses a rank there
   const Assembly a = assemble(m, VectorX<double>{{0.3, -0.2, 0.1}}, "f");
-  EXPECT_LE(a.residual, 1e-9 * 4.5);
+  EXPECT_LT(ratio(a.residual, 4 * 4.5), 30);  // three joints and the closing one
 }
 
 TEST(assembly, refuses_what_cannot_be_closed) {
