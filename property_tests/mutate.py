@@ -27,20 +27,20 @@ from mutations import mutants
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
-# Sources and the operators that hold them.
+# Sources, and the operators and parts (mutant_killer.cpp) that hold them.
 FILES = {
-    "elimination.cpp": "lcaba aba_sweep lcaba_refined", "block_diagonal.cpp": "lcaba aba_sweep proximal",
-    "lcaba.cpp": "lcaba", "aba_sweep.cpp": "aba_sweep", "sweep.cpp": "lcaba lcaba_refined proximal",
-    "columns.h": "lcaba aba_sweep lcaba_refined", "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky",
-    "cg.cpp": "cg cg_preconditioned", "six.h": "lcaba aba_sweep lcaba_refined",
-    "kkt_elimination.cpp": "kkt_elimination dense_refined", "ldlt_pivoted.h": "kkt_elimination",
-    "capped_inverse.cpp": "proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float",
-    "weight_root.cpp": "lcaba_qr", "ladder.cpp": "ladder", "factor.cpp": "lcaba aba_sweep lcaba_refined",
-    "kkt_residual.cpp": "lcaba_refined", "refinement.cpp": "lcaba_refined proximal", "lcaba_refined.cpp": "lcaba_refined",
-    "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "elimination.h": "lcaba aba_sweep lcaba_refined",
-    "vectors.h": "lcaba_refined", "wide.h": "lcaba_refined", "refinement.h": "lcaba_refined proximal", "block_diagonal.h": "lcaba aba_sweep proximal", "lcaba_qr.cpp": "lcaba_qr",
-    "square_root_factor.cpp": "lcaba_qr", "square_root_solve.cpp": "lcaba_qr", "mass_root.cpp": "lcaba_qr", "householder.h": "lcaba_qr",
-    "front_plan.cpp": "lcaba_qr", "weight_root.h": "lcaba_qr"}
+    "elimination.cpp": "plans lcaba aba_sweep", "elimination.h": "plans lcaba aba_sweep lcaba_refined",
+    "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
+    "factor.cpp": "kernels lcaba aba_sweep", "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
+    "columns.h": "lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
+    "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
+    "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined", "lcaba_refined.cpp": "lcaba_refined",
+    "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "cg.cpp": "cg cg_preconditioned",
+    "ldlt_pivoted.h": "kkt_elimination", "kkt_elimination.cpp": "kkt_elimination dense_refined",
+    "capped_inverse.cpp": "proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "ladder",
+    "operator.cpp": "dense_cholesky aba_sweep lcaba_refined",
+    "weight_root.cpp": "lcaba_qr", "weight_root.h": "lcaba_qr", "mass_root.cpp": "lcaba_qr", "front_plan.cpp": "lcaba_qr", "householder.h": "lcaba_qr",
+    "square_root_factor.cpp": "lcaba_qr", "square_root_solve.cpp": "lcaba_qr", "lcaba_qr.cpp": "lcaba_qr"}
 
 
 def read_equivalent(path):
