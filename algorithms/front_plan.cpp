@@ -94,7 +94,7 @@ class Builder {
     const int source = narrow(static_cast<Index>(out_.fronts.size()));
     int rest = f.rows, reflections = 0;
     for (int k = 0; k < f.members && rest > 0; ++k) {
-      const bool reduced = rest > FrontPlan::handed_limit;
+      const bool reduced = rest > 6 * (f.members - k) + FrontPlan::surplus;
       const int rows = reduced ? 6 : rest;
       rest -= rows;
       append_handed(k, {source, rest, rows, f.members - k, reduced, 0, 0}, f);

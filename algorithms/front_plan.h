@@ -12,7 +12,7 @@
 namespace delassus {
 
 struct FrontPlan {
-  static constexpr int handed_limit = 18;  ///< at least 6; more: fewer, longer reflections (18 measured fastest)
+  static constexpr int surplus = 12;  ///< rows handed on beyond their columns; more: fewer, longer reflections
 
   struct Front {
     int rows, dofs, members;       ///< rows but those of M; n_i; |Q_i|

@@ -7,7 +7,7 @@
 // Pivots   column: the largest norm that is left; row: the largest entry of that column. With both, the error of every
 //          row is relative to the size of that row (not to the largest), which is what lets weights of very different
 //          size stand in one panel.
-// Cost     per reflection 4 operations per entry it meets, 2 more in leading columns for their norms.
+// Cost     per reflection 4 operations per entry it meets.
 // Source   M. Powell, J. Reid, 1969; A. Cox, N. Higham, Stability of Householder QR factorization for weighted
 //          least squares problems, 1998.
 #pragma once
@@ -70,31 +70,91 @@ template <class T> inline void reflect(Six<T>* rows, const T* v, const T& beta, 
   for (int r = 0; r < count; ++r) subtract_scaled(rows[r], even, v[r]);
 }
 
+template <int... lane> inline void keep_larger(Lanes8& value, Lanes8& index) {
+  const Lanes8 other = __builtin_shufflevector(value, value, lane...), at = __builtin_shufflevector(index, index, lane...);
+  index = other > value ? at : index;
+  value = other > value ? other : value;
+}
+
 /// The index of the largest entry of v in magnitude; v is zero from `count` to the next multiple of eight.
 template <class T> [[nodiscard]] inline int largest_entry(const T* v, int count) {
   using std::abs;
-  int largest = 0;
   if constexpr (std::is_same_v<T, double>) {
     const auto* const vs = reinterpret_cast<const UnalignedLanes8*>(v);
     const auto magnitude = [&](int k) { const Lanes8 x = vs[k]; return Lanes8(x < 0 ? -x : x); };
-    Lanes8 best = magnitude(0), chunk{};  // by lane: the largest, and the chunk it is in
+    Lanes8 best = magnitude(0), index{0, 1, 2, 3, 4, 5, 6, 7}, here = index;  // by lane: the largest, and where it is
     for (int k = 1; k < (count + 7) / 8; ++k) {
-      const Lanes8 next = magnitude(k), here = Lanes8{} + k;
-      chunk = next > best ? here : chunk;
+      const Lanes8 next = magnitude(k);
+      here += 8;
+      index = next > best ? here : index;
       best = next > best ? next : best;
     }
-    int lane = 0;
-    for (int l = 1; l < 8; ++l)
-      if (best[l] > best[lane]) lane = l;
-    largest = 8 * static_cast<int>(chunk[lane]) + lane;
+    keep_larger<4, 5, 6, 7, 0, 1, 2, 3>(best, index);
+    keep_larger<2, 3, 0, 1, 6, 7, 4, 5>(best, index);
+    keep_larger<1, 0, 3, 2, 5, 4, 7, 6>(best, index);
+    return static_cast<int>(index[0]);
   } else {
+    int largest = 0;
     for (int r = 1; r < count; ++r)
       if (T(abs(v[r])) > T(abs(v[largest]))) largest = r;
+    return largest;
   }
-  return largest;
 }
 
-/// One reflection, besides its vector: the row of its pivot, β, and what it leaves there.
+/// The entries c of eight rows, for six c. Rows from `count` on are taken for zero.
+inline void columns_of_eight(const Six<double>* rows, int count, Lanes8 (&column)[6]) {
+  Lanes8 r[8], t[8], u[8];
+  for (int k = 0; k < 8; ++k) r[k] = k < count ? rows[k].v : Lanes8{};
+  for (int k = 0; k < 8; k += 2) {  // of two rows: entries 0 2 4, entries 1 3 5
+    t[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    t[k + 1] = __builtin_shufflevector(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int k = 0; k < 8; k += 4)  // of four rows: entries 0 4, 2, 1 5, 3
+    for (int odd = 0; odd < 2; ++odd) {
+      u[k + 2 * odd] = __builtin_shufflevector(t[k + odd], t[k + 2 + odd], 0, 1, 8, 9, 4, 5, 12, 13);
+      u[k + 2 * odd + 1] = __builtin_shufflevector(t[k + odd], t[k + 2 + odd], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int c = 0; c < 4; ++c) {
+    const int from = c % 2 * 2 + c / 2;
+    column[c] = __builtin_shufflevector(u[from], u[from + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+  }
+  for (int odd = 0; odd < 2; ++odd)
+    column[4 + odd] = __builtin_shufflevector(u[2 * odd], u[2 * odd + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+/// x_k[r] = rows[r]ᵀ matrix[k] for r < count, zero from there to the stride; x_k at x + k · stride.
+template <class T> inline void multiply(const Six<T>* rows, int count, const Six<T>* matrix, int columns, T* x, Index stride) {
+  for (int r = 0; r < stride; r += 8) {
+    if constexpr (std::is_same_v<T, double>) {
+      Lanes8 entries[6];
+      columns_of_eight(rows + r, count - r, entries);
+      for (int k = 0; k < columns; ++k) {
+        Lanes8 sum = entries[0] * matrix[k][0];
+        for (int c = 1; c < 6; ++c) sum += entries[c] * matrix[k][c];
+        *reinterpret_cast<UnalignedLanes8*>(x + k * stride + r) = sum;
+      }
+    } else {
+      for (int k = 0; k < columns; ++k)
+        for (int q = r; q < r + 8; ++q) x[k * stride + q] = q < count ? dot(matrix[k], rows[q]) : T(0);
+    }
+  }
+}
+
+/// x_c[r] = entry c of rows[r] for r < count, zero from there to the stride; x_c at x + c · stride.
+template <class T> inline void transpose(const Six<T>* rows, int count, T* x, Index stride) {
+  for (int r = 0; r < stride; r += 8) {
+    if constexpr (std::is_same_v<T, double>) {
+      Lanes8 entries[6];
+      columns_of_eight(rows + r, count - r, entries);
+      for (int c = 0; c < 6; ++c) *reinterpret_cast<UnalignedLanes8*>(x + c * stride + r) = entries[c];
+    } else {
+      for (int c = 0; c < 6; ++c)
+        for (int q = r; q < r + 8; ++q) x[c * stride + q] = q < count ? rows[q][c] : T(0);
+    }
+  }
+}
+
+/// One reflection, besides its vector: the row of its pivot, β, and what it leaves there. β = 0: the column was zero.
 template <class T> struct Reflection {
   int pivot;
   T beta, left;
@@ -123,23 +183,37 @@ template <class T> struct Panel {
     std::swap(lane[k], lane[longest]);
     std::swap_ranges(column(k), column(k) + stride, column(longest));
   }
-  /// Reduces column k, of that squared norm, within the first `count` rows.
-  Reflection<T> reduce(int k, const T& squared, int count) const {
+  /// Reduces column k within the first `count` rows and brings the pivot's row to the last of them.
+  Reflection<T> reduce(int k, int count) const {
     using std::abs;
     using std::sqrt;
     T* const v = column(k);
+    const T squared = inner(v, v, count);
+    if (!ScalarTraits<T>::usable_pivot(squared)) {
+      const T left = v[count - 1];
+      std::fill_n(v, stride, T(0));
+      return {count - 1, T(0), left};
+    }
     const int pivot = largest_entry(v, count);
     const T norm = sqrt(squared), x = v[pivot];
     v[pivot] = x < T(0) ? x - norm : x + norm;
     const T beta = T(1) / (norm * T(abs(v[pivot])));
-    for (int c = k + 1; c < width; ++c) reflect(column(c), v, beta, count);
-    for (int b = 0; b < blocks; ++b) reflect(block(b), v, beta, count);
+    for (int c = k + 1; c < width; ++c) {
+      reflect(column(c), v, beta, count);
+      std::swap(column(c)[pivot], column(c)[count - 1]);
+    }
+    for (int b = 0; b < blocks; ++b) {
+      reflect(block(b), v, beta, count);
+      std::swap(block(b)[pivot], block(b)[count - 1]);
+    }
     return {pivot, beta, x < T(0) ? norm : T(-norm)};
   }
-  /// Exchanges two rows behind column k.
-  void exchange(int k, int r, int s) const {
-    for (int c = k + 1; c < width; ++c) std::swap(column(c)[r], column(c)[s]);
-    for (int b = 0; b < blocks; ++b) std::swap(block(b)[r], block(b)[s]);
+  /// Takes the entry in row `last` out of column c, whose squared norm it had a share in.
+  T take(int c, int last, T& squared) const {
+    const T entry = std::exchange(column(c)[last], T(0)), before = squared;
+    squared -= entry * entry;
+    if (!(squared > before / 1024)) squared = inner(column(c), column(c), last);  // few digits are left
+    return entry;
   }
 };
 

@@ -22,13 +22,16 @@ template <class T> Report LcabaQr<T>::do_update_damping(const Damping<T>& dampin
 
 template <class T> Report LcabaQr<T>::do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const {
   if (!factored_.ok()) return factored_;
-  const auto correct = [this](const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) {
-    factor_.solve_kkt(r1, r2, d_nu, d_lambda, work);
-  };
   Report worst;
-  for (Index c = 0; c < a.cols(); ++c)
+  for (Index c = 0; c < a.cols(); ++c) {
+    bool first = true;  // r₁ is zero
+    const auto correct = [&](const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) {
+      factor_.solve_kkt(first ? nullptr : r1, r2, d_nu, d_lambda, work);
+      first = false;
+    };
     worst = worse(worst, refinement_.solve(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(),
                                            wanted, {max_steps}, correct, workspace));
+  }
   return worst;
 }
 

@@ -91,27 +91,27 @@ template <class T> int SquareRootFactor<T>::eliminate(int i) {
   T squared[6];
   for (int c = 0; c < f.dofs; ++c) {
     lane[c] = c;
-    squared[c] = T(1) + inner(panel.column(c), panel.column(c), last);
+    squared[c] = f.dofs == 1 ? T(0) : inner(panel.column(c), panel.column(c), last);
   }
   for (int k = 0; k < f.dofs; ++k) {
     panel.bring_longest(k, squared, lane);
-    if (!ScalarTraits<T>::usable_pivot(squared[k])) return lane[k];
-    panel.column(k)[last] = T(1);
+    panel.column(k)[last] = T(1);  // its row of M
     for (int b = 0; b < f.members; ++b)
       panel.block(b)[last] = b + 1 == f.parent_block ? mass_.force(i)[lane[k]] : Six<T>::zero();
-    const Reflection<T> r = panel.reduce(k, squared[k], last + 1);
-    panel.exchange(k, r.pivot, last);
-    beta_[f.reflection + k] = r.beta;
-    pivot_[f.reflection + k] = r.pivot;
+    const Reflection<T> r = keep(f.reflection + k, panel.reduce(k, last + 1));
+    if (r.beta == T(0)) return lane[k];
     t_inverse_[first + k] = T(1) / r.left;
-    for (int c = k + 1; c < f.dofs; ++c) {
-      t_[first + k].v[lane[c]] = std::exchange(panel.column(c)[last], T(0));
-      squared[c] = T(1) + inner(panel.column(c), panel.column(c), last);
-    }
+    for (int c = k + 1; c < f.dofs; ++c) t_[first + k].v[lane[c]] = panel.take(c, last, squared[c]);
     for (int b = 0; b < f.members; ++b) c_[f.c + b * f.dofs + k] = panel.block(b)[last];
   }
   hand_on(f, panel);
   return -1;
+}
+
+template <class T> Reflection<T> SquareRootFactor<T>::keep(Index at, const Reflection<T>& r) {
+  beta_[at] = r.beta;
+  pivot_[at] = r.pivot;
+  return r;
 }
 
 // Calls put(block, row, rows, count) for everything front i consists of: block 0 is a_i, block 1 + k member k.
@@ -153,12 +153,7 @@ template <class T> Panel<T> SquareRootFactor<T>::assemble(int i) {
 
 template <class T> void SquareRootFactor<T>::fill_columns(int i, const Panel<T>& panel, const Six<T>* own) {
   const Front& f = fronts_.fronts[i];
-  for (int k = 0; k < f.dofs; ++k) {
-    T* const column = panel.column(k);
-    const Six<T> motion = mass_.motion(i)[k];
-    for (int r = f.joint_rows; r < f.rows; ++r) column[r] = dot(motion, own[r]);
-    std::fill(column + f.rows, column + f.stride, T(0));
-  }
+  multiply(own, f.rows, mass_.motion(i), f.dofs, panel.columns, f.stride);
   int row = 0;
   for (int e = f.first_constraint; row < f.joint_rows; ++e)
     for (Index r = 0; r < fronts_.constraints[e].rows; ++r, ++row)
@@ -184,30 +179,20 @@ template <class T> void SquareRootFactor<T>::reduce_member(const Front& f, const
   const Panel<T> member{panel.column(t), f.stride, 6, panel.block(b + 1), panel.height, panel.blocks - b - 1};
   const int rows = f.last(t) + 1;
   Six<T>* const own = panel.block(b);
+  transpose(own, rows, member.columns, f.stride);
   int lane[6];
   T squared[6];
   for (int c = 0; c < 6; ++c) {
-    T* const column = member.column(c);
-    for (int r = 0; r < rows; ++r) column[r] = own[r][c];
-    std::fill(column + rows, column + f.stride, T(0));
-    squared[c] = inner(column, column, rows);
     lane[c] = c;
+    squared[c] = inner(member.column(c), member.column(c), rows);
   }
   for (int k = 0; k < 6; ++k, ++t) {
     const int last = f.last(t);
     member.bring_longest(k, squared, lane);
-    Reflection<T> r{last, T(0), member.column(k)[last]};
-    if (ScalarTraits<T>::usable_pivot(squared[k])) r = member.reduce(k, squared[k], last + 1);
-    else std::fill_n(member.column(k), f.stride, T(0));  // nothing is left
-    member.exchange(k, r.pivot, last);
-    beta_[f.reflection + t] = r.beta;
-    pivot_[f.reflection + t] = r.pivot;
+    const Reflection<T> r = keep(f.reflection + t, member.reduce(k, last + 1));
     own[last] = Six<T>::zero();
     own[last].v[lane[k]] = r.left;
-    for (int c = k + 1; c < 6; ++c) {
-      own[last].v[lane[c]] = std::exchange(member.column(c)[last], T(0));
-      squared[c] = inner(member.column(c), member.column(c), last);
-    }
+    for (int c = k + 1; c < 6; ++c) own[last].v[lane[c]] = member.take(c, last, squared[c]);
   }
 }
 

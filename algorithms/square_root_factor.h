@@ -50,6 +50,7 @@ template <class T> class SquareRootFactor {
   [[nodiscard]] Panel<T> assemble(int i);
   template <class Put> void for_pieces(const Front& f, Put&& put) const;
   void fill_columns(int i, const Panel<T>& panel, const Six<T>* own);
+  Reflection<T> keep(Index at, const Reflection<T>& r);
   void hand_on(const Front& f, const Panel<T>& panel);
   void reduce_member(const Front& f, const Panel<T>& panel, int b, int t);
 

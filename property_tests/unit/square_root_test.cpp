@@ -36,16 +36,11 @@ struct Reduction {
     }
     for (int k = 0, last = static_cast<int>(A.rows()) - 1; k < width; ++k, --last) {
       panel.bring_longest(k, squared, lane.data());
-      if (!(squared[k] > 0)) return;
-      const Reflection<double> r = panel.reduce(k, squared[k], last + 1);
-      panel.exchange(k, r.pivot, last);
+      const Reflection<double> r = panel.reduce(k, last + 1);
       beta.push_back(r.beta);
       pivot.push_back(r.pivot);
       left(k, lane[k]) = r.left;
-      for (int c = k + 1; c < width; ++c) {
-        left(k, lane[c]) = std::exchange(panel.column(c)[last], 0.0);
-        squared[c] = inner(panel.column(c), panel.column(c), last);
-      }
+      for (int c = k + 1; c < width; ++c) left(k, lane[c]) = panel.take(c, last, squared[c]);
     }
   }
   /// Q times the rows left, column c.
@@ -71,6 +66,23 @@ TEST(Householder, PivotsAreExactWhereNormsAre) {
   EXPECT_EQ(r.left(0, 1), 0);
   EXPECT_EQ(r.left(1, 1), -3);
   EXPECT_EQ(r.left(1, 0), 0);
+}
+
+// What is left of an estimated norm must not decide the order: columns that differ in the last rows only.
+TEST(Householder, KnowsTheLongerColumnAfterCancellation) {
+  MatrixX<double> A(4, 3);
+  A << 0x1p30, 0x1p30, 0x1p30, 0, 0x1p-10, 0x1p-9, 0, 0, 0, 0, 0, 0;
+  const Reduction r(A);
+  EXPECT_EQ(r.lane, (std::vector<int>{0, 2, 1}));
+}
+
+TEST(Householder, KeepsAColumnOfZerosAsItIs) {
+  MatrixX<double> A = MatrixX<double>::Zero(9, 3);
+  A.col(1).setConstant(2);
+  const Reduction r(A);
+  EXPECT_EQ(r.left(0, 1), -6);
+  for (const int k : {1, 2}) EXPECT_EQ(r.beta[k], 0);
+  for (const int c : {0, 2}) EXPECT_EQ(r.restored(9, c), A.col(c));
 }
 
 TEST(Householder, ANotANumberReachesEveryColumnBehind) {
