@@ -17,7 +17,6 @@ struct DefectRow {
   std::string_view base;    ///< the right operator it was made from; empty: it is right itself
   OperatorRow op;           ///< its name is the defect's
   const char* unseen = nullptr;   ///< why the random search need not find it; nullptr: it must
-  const char* open = nullptr;     ///< why no law catches it yet: an open finding; nullptr: one must
   bool allocates = false;         ///< so does its right operator behind the same wrapper
 
   [[nodiscard]] bool right() const { return base.empty(); }

@@ -146,7 +146,7 @@ std::vector<DefectRow> refinement_defects() {
   subtracted.makers = {make<WrongRefinement<double>, double>, nullptr, nullptr, nullptr, make<WrongRefinement<Rational>, Rational>, nullptr};
   left_out.name = "refinement_left_out";
   left_out.makers = find_operator("lcaba").makers;
-  return {{subtracted.name, "the correction is subtracted", "lcaba_refined", subtracted, nullptr, nullptr, true},
+  return {{subtracted.name, "the correction is subtracted", "lcaba_refined", subtracted, nullptr, true},
           {left_out.name, "the direct formula under the error class of the refined one", "lcaba_refined", left_out}};
 }
 

@@ -66,6 +66,11 @@ std::vector<DefectRow> damping_defects() {
         d.d.diagonal.back() = d.before.diagonal.back();
         if (!d.d.blocks.empty() && d.d.blocks.size() == d.before.blocks.size()) d.d.blocks.back() = d.before.blocks.back();
       }),
+      defect<in>("first_row_stale", "update_damping leaves the first row and the first block as they were", [](auto d) {
+        if (!d.alone || d.d.diagonal.empty()) return;
+        d.d.diagonal.front() = d.before.diagonal.front();
+        if (!d.d.blocks.empty() && d.d.blocks.size() == d.before.blocks.size()) d.d.blocks.front() = d.before.blocks.front();
+      }),
       defect<in>("update_damping_adds", "update_damping adds to the damping before", [](auto d) {
         for (std::size_t r = 0; d.alone && r < d.d.diagonal.size(); ++r) d.d.diagonal[r] += d.before.diagonal[r];
       }),

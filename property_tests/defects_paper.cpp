@@ -97,7 +97,7 @@ template <Lines L> DefectRow row(std::string_view name, std::string what, std::s
   op.makers = {};
   std::get<Maker<double>>(op.makers) = make<L, double>;
   std::get<Maker<Rational>>(op.makers) = make<L, Rational>;
-  return {name, std::move(what), base, op, nullptr, nullptr, true};
+  return {name, std::move(what), base, op, nullptr, true};
 }
 
 template <std::size_t... K> void add_lines(std::vector<DefectRow>& out, std::index_sequence<K...>) {

@@ -142,7 +142,7 @@ template <Place P, class F> DefectRow defect(std::string_view name, std::string 
   OperatorRow op = find_operator("dense_cholesky");
   op.name = name;
   op.makers = {make_wrong<P, F, double>, make_wrong<P, F, float>, make_wrong<P, F, Quad>, nullptr, make_wrong<P, F, Rational>, nullptr};
-  return {name, std::move(what), "dense_cholesky", op, unseen, nullptr, P == Place::damping};
+  return {name, std::move(what), "dense_cholesky", op, unseen, P == Place::damping};
 }
 
 /// T of Numbers<T>, Damped<T>, Answer<T>.

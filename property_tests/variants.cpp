@@ -217,8 +217,7 @@ template <class T> void scale_rows(Damping<T>& d, const Entry& c, const T& facto
 template <class T> Damping<T> other_damping(const Structure& s, const Damping<T>& d) {
   Damping<T> out = d;
   int k = 0;
-  for (const Entry& c : constraints(s)) scale_rows(out, c, T(1 << (k++ % 3)));
-  if (k == 1) scale_rows(out, constraints(s)[0], T(2));
+  for (const Entry& c : constraints(s)) scale_rows(out, c, T(2 << (k++ % 3)));
   return out;
 }
 

@@ -27,7 +27,7 @@ template <class T> [[nodiscard]] Variant<T> armature_as_rows(const Problem<T>& p
 /// Other numbers on the same structure: H and armature doubled, K and 𝒦 halved, R⁻¹ times four.
 template <class T> [[nodiscard]] Variant<T> other_numbers(const Problem<T>& p, const Damping<T>& d);
 
-/// R⁻¹ of constraint k (in order of rows) multiplied by 1, 2 or 4, in turn.
+/// R⁻¹ of constraint k (in order of rows) multiplied by 2, 4 or 8, in turn.
 template <class T> [[nodiscard]] Damping<T> other_damping(const Structure& s, const Damping<T>& d);
 
 /// The first constraint made hard: R⁻¹ = 0 on its rows.
