@@ -271,7 +271,7 @@ Spec mixed_units(Index n, std::uint64_t seed) {
 std::vector<FamilyRow> hard_families() {
   return {
       {"stiffest", "the swimmer with R⁻¹ = 1e-14", stiffest, {4}, 2},
-      {"softest", "the swimmer with R⁻¹ = 1e14", softest, {4}, -1},
+      {"softest", "the swimmer with R⁻¹ = 1e14", softest, {4}, 1},
       {"uniform_damping", "the swimmer with one R⁻¹ from 1e-14 to 1e14, by the seed", uniform_damping, {5}, 2},
       {"stiff_contacts", "the stack with R⁻¹ = 1e-12", stiff_contacts, {3}, -1},
       {"mixed_contacts", "the stack with R⁻¹ from 1e-8 to 1e12", mixed_contacts, {3}, -1},
@@ -297,7 +297,7 @@ std::vector<FamilyRow> hard_families() {
       {"world_frame", "a robot described from a point 1 km away", world_frame, {4}, 2},
       {"micrometre", "the swimmer at lengths of 1e-6 m", micrometre, {4}, 2},
       {"kilometre", "the swimmer at lengths of 1 km", kilometre, {4}, 2},
-      {"mixed_units", "links of 1 cm and 1 mg to 100 m and 1000 t", mixed_units, {6}, -1},
+      {"mixed_units", "links of 1 cm and 1 mg to 100 m and 1000 t", mixed_units, {6}, 2},
       {"tiny_numbers", "a swimmer with masses of 10^-n kg", tiny_numbers, {30}, 3},
       {"huge_numbers", "a swimmer with masses of 10^n kg", huge_numbers, {30}, 3},
   };
