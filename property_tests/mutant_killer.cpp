@@ -77,6 +77,7 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
   cases.push_back(laws::with_partial_blocks(laws::make_case("generic", 4, 1), 1));
   cases.push_back(laws::with_partial_blocks(laws::make_case("joint_friction", 3, 1), 4));
   cases.push_back(laws::without_freedoms());
+  cases.push_back(laws::rows_on_a_free_joint());
   std::vector<Check> all, rest;
   for (const Pinned& planned : plans) {
     if (!of_plans) break;

@@ -128,6 +128,22 @@ Case without_freedoms() {
   return make_case(std::move(p), Damping<double>::uniform(3, 0.5), "no freedoms", 1, true);
 }
 
+Case rows_on_a_free_joint() {
+  Structure s;
+  s.add_body(ground, 6);
+  s.add_body(0, 1);
+  s.add_joint_constraint(2, 0);
+  s.add_link_constraint(2, {0, 1});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  for (auto& H : p.H) H.diagonal() << 2, 3, 4, 5, 5, 5;
+  for (Index c = 0; c < 6; ++c) p.S[static_cast<std::size_t>(c)][c] = 1;
+  p.S[6] << 0, 1, 0, 0.5, 0, -1;
+  const MatrixX<double> numbers = vectors<double>(static_cast<Index>(6 * p.K.size() + p.joint_K.size()), 1, 3);
+  for (std::size_t k = 0; k < p.K.size(); ++k) p.K[k] = numbers.block(static_cast<Index>(6 * k), 0, 6, 1);
+  for (std::size_t k = 0; k < p.joint_K.size(); ++k) p.joint_K[k] = numbers(static_cast<Index>(6 * p.K.size() + k), 0);
+  return make_case(std::move(p), Damping<double>::uniform(4, 0.25), "rows on a free joint", 1, true);
+}
+
 std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c) {
   const auto fresh = row.make<double>(), used = row.make<double>();
   fresh->analyze(c.problem.structure);

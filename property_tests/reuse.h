@@ -15,6 +15,9 @@ namespace delassus::laws {
 /// Two welded bodies that three rows link: no degree of freedom, A = R⁻¹.
 [[nodiscard]] Case without_freedoms();
 
+/// Two rows on the six freedoms of a free body, two between it and another one.
+[[nodiscard]] Case rows_on_a_free_joint();
+
 /// What an operator still knows of its use for `before` when it is analyzed, updated, damped and asked for `c`; empty: the
 /// bits and reports are those of a fresh one, and nothing was written behind the workspace.
 [[nodiscard]] std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c);

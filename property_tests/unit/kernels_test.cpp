@@ -15,6 +15,7 @@ TEST(Kernels, GiveTheNumbersOfTheDefinition) {
       EXPECT_EQ(kernel_wrong(with_partial_blocks(c, static_cast<std::uint64_t>(n))), "");
     }
   EXPECT_EQ(kernel_wrong(without_freedoms()), "");
+  EXPECT_EQ(kernel_wrong(rows_on_a_free_joint()), "");
   EXPECT_EQ(kernel_wrong(make_case("no_rows", 4, 1)), "");
 }
 

@@ -40,5 +40,7 @@ TEST(Reuse, LawsHoldForASingularBlock) {
 
 TEST(Reuse, LawsHoldWithoutFreedoms) { expect_laws(without_freedoms()); }
 
+TEST(Reuse, LawsHoldForRowsOnAFreeJoint) { expect_laws(rows_on_a_free_joint()); }
+
 }  // namespace
 }  // namespace delassus::laws
