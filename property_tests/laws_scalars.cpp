@@ -65,6 +65,10 @@ template <Function F> Verdict in_quad(const OperatorRow& op, const Case& c) {
   return judge(converted<Quad>(error), error_bound(F, op, c, converted<double>(x)), unit_roundoff<Quad>, bound_name(F, op));
 }
 
+Quad maximum(const MatrixX<Quad>& x) { return x.size() == 0 ? Quad(0) : Quad(x.maxCoeff()); }
+/// ‖A‖_∞.
+Quad norm(const MatrixX<Quad>& A) { return maximum(magnitude(A).rowwise().sum()); }
+
 /// The answer to one vector; nothing where update or solve refuses.
 template <class T> std::optional<MatrixX<T>> answered(const OperatorRow& op, const Case& c, const MatrixX<T>& x) {
   const auto [p, d] = numbers<T>(c);
@@ -85,18 +89,17 @@ const char* why_not_refusal(const OperatorRow& op, const Case& c) {
 
 /// Hard or dependent rows. Solved in rational numbers: solved in double. Refused in rational numbers: refused in double,
 /// or answered with a residual A y − a within rounding, the answer to a problem that differs by rounding (in norm, for
-/// the error class normwise).
+/// the error class normwise: by ‖A‖‖y‖ too).
 Verdict same_refusal(const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
   const auto exact = answered<Rational>(op, c, converted<Rational>(x));
   const auto rounded = answered<double>(op, c, x);
   if (exact && !rounded) return failure("solved in rational numbers, refused in double", bound_name(apply, op));
   if (exact || !rounded) return {0, bound_name(apply, op), -1, {}};
-  const MatrixX<Quad> residual = times<Quad>(definition<double>(apply, c), converted<Quad>(*rounded)) - converted<Quad>(x);
+  const MatrixX<Quad>& A = definition<double>(apply, c);
+  const MatrixX<Quad> residual = times<Quad>(A, converted<Quad>(*rounded)) - converted<Quad>(x);
   MatrixX<Quad> bound = error_bound(apply, op, c, *rounded);
-  Quad largest(0);
-  for (Index r = 0; r < bound.rows(); ++r) largest = std::max(largest, Quad(bound(r, 0)));
-  if (op.solve_error == ErrorClass::normwise) bound.setConstant(largest);
+  if (op.solve_error == ErrorClass::normwise) bound.setConstant(maximum(bound) + norm(A) * maximum(magnitude(converted<Quad>(*rounded))));
   return judge(residual, bound, unit_roundoff<double>, bound_name(apply, op));
 }
 
