@@ -90,16 +90,18 @@ template <class T> std::string forgotten(const OperatorRow& row, const Problem<d
   return words;
 }
 
-Problem<double> tip_of_two_freedoms(bool held) {
+/// A free body, and another one on `tip` freedoms, or none (−1).
+Problem<double> free_body(Index tip, bool held) {
   Structure s;
   s.add_body(ground, 6);
-  s.add_body(0, 2);
-  s.add_link_constraint(3, held ? std::vector<Index>{0, 1} : std::vector<Index>{0});
+  if (tip >= 0) s.add_body(0, tip);
+  s.add_link_constraint(3, tip >= 0 && held ? std::vector<Index>{0, 1} : std::vector<Index>{0});
   Problem<double> p(std::make_shared<const Structure>(std::move(s)));
   for (auto& H : p.H) H.diagonal() << 2, 3, 4, 5, 5, 5;
-  for (Index c = 0; c < 6; ++c) p.S[static_cast<std::size_t>(c)][c] = 1;
-  p.S[6] << 0, 1, 0, 0.5, 0, -1;
-  p.S[7] << 1, 0, 0, 0, 2, 0;
+  for (std::size_t c = 0; c < p.S.size(); ++c) {
+    p.S[c][static_cast<Index>(c % 6)] = 1;
+    if (c >= 6) p.S[c][5 - static_cast<Index>(c % 6)] = 0.5;
+  }
   for (std::size_t r = 0; r < p.K.size(); ++r) p.K[r][static_cast<Index>(r)] = 1;
   return p;
 }
@@ -185,9 +187,11 @@ std::string lost_pivot_forgotten(const OperatorRow& row, bool held) {
   spec.links.resize(1);
   spec.links[0].bodies = {held ? 2 : 0};
   const Problem<double> chain = generators::build(spec).problem;
-  const Problem<double> pair = tip_of_two_freedoms(held);  // its step is not one of the simple ones
+  // A step that is not one of the simple ones, and the first degree of freedom of all.
+  std::vector<Problem<double>> problems = {chain, free_body(2, held)};
+  if (held) problems.push_back(free_body(-1, held));
   std::string words;
-  for (const Problem<double>& problem : {chain, pair}) {
+  for (const Problem<double>& problem : problems) {
     if (words.empty()) words = forgotten<double>(row, problem, Damping<double>::uniform(3, 0.5), held);
     if (words.empty() && std::get<Maker<Rational>>(row.makers)) words = forgotten<Rational>(row, problem, Damping<double>::uniform(3, 0.5), held);
   }
