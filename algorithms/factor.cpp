@@ -207,7 +207,7 @@ template <class T> bool Factor<T>::diagonalise(int i) {
       for (int c = 0; c < n; ++c) add(w[k * n + c], U[c]);
 
   Six<T>* const e = e_.data() + std::max(0, e_of_[i]);
-  for (int c = 0; n > 1 && c < n; ++c) e[c] = unit<T>(c);
+  for (int c = 0; n > 1 && c < n; ++c) e[c] = unit_vector<T>(c);
   for (int c = 0; c < n; ++c) {
     if (!ScalarTraits<T>::usable_pivot(D[c][c])) return false;
     d_inverse_[first + c] = T(1) / D[c][c];

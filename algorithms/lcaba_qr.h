@@ -4,7 +4,7 @@
 // Formula  ν minimises ‖ν‖²_M + ‖a − J ν‖²_R;  λ = Wᵀ ρ, ρ the weighted residual of the fit, WᵀW = R.
 // Singular when M is (lost_pivot); R⁻¹ must be positive (zero_damping names the row).
 // How      SquareRootFactor in the order of lcaba; refinement.h with the same factor, which mostly takes one step.
-// Cost     update: that of SquareRootFactor + the factor of M; solve: (k + 1) solves and residuals for k steps; O(n + m)
+// Cost     update: that of SquareRootFactor; solve: (k + 1) solves and residuals for k steps; O(n + m)
 //          with local loops. About 3.5 times the operations of lcaba, 6 where many bodies couple (bench, update + solve).
 // Workspace  refinement.h's with that of SquareRootFactor.
 // Error    as lcaba_refined, but at any R: the first evaluation is accurate in ν, its λ is off only by forces that
@@ -12,13 +12,13 @@
 // Source   square_root_factor.h; refinement: Å. Björck, 1967, on the augmented system.
 #pragma once
 
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 #include "algorithms/refinement.h"
 #include "algorithms/square_root_factor.h"
 
 namespace delassus {
 
-template <class T> class LcabaQr : public Operator<T> {
+template <class T> class LcabaQr : public ColumnByColumn<T> {
  public:
   static constexpr int max_steps = 5;
 
@@ -26,17 +26,14 @@ template <class T> class LcabaQr : public Operator<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override {
-    return do_solve_to(a, f, Accuracy::full(), workspace);
-  }
-  Report do_solve_to(ConstRef<T> a, Ref<T> f, Accuracy wanted, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
   SquareRootFactor<T> factor_;
   Refinement<T> refinement_;
-  Report factored_M_, factored_;
+  Report factored_;
 };
 
 }  // namespace delassus

@@ -1,5 +1,6 @@
 #include "algorithms/mass_root.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace delassus {
@@ -54,6 +55,25 @@ template <class T> int MassRoot<T>::eliminate(int i, const T* armature) {
   add(parent, inertia_[i]);
   for (int k = 0; k < n; ++k) subtract_outer(parent, c[k], c[k]);
   return -1;
+}
+
+template <class T> T MassRoot<T>::energy(const T* tau, T* work) const {
+  Six<T>* const f = reinterpret_cast<Six<T>*>(work);
+  std::fill_n(f, plan_->steps, Six<T>::zero());
+  T sum(0);
+  for (int i = 0; i < plan_->steps; ++i) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    const T* const t = tau + structure_->first_dof[plan_->body[i]];
+    Six<T> rest = f[i];
+    for (int k = 0; k < n; ++k) {
+      T w = dot(motion_[first + k], f[i]);
+      for (int j = 0; j <= k; ++j) w += T(basis_[first + k][j]) * t[j];
+      subtract_scaled(rest, force_[first + k], w);
+      sum += w * w;
+    }
+    if (plan_->parent[i] >= 0) add(f[plan_->parent[i]], rest);
+  }
+  return sum;
 }
 
 template <class T> Index MassRoot<T>::bytes() const {

@@ -26,6 +26,10 @@ template <class T> class MassRoot {
   [[nodiscard]] const Six<T>* force(int i) const { return force_.data() + plan_->first_column[i]; }
   [[nodiscard]] const Six<T>* basis(int i) const { return basis_.data() + plan_->first_column[i]; }
 
+  /// τᵀ M⁻¹ τ = Σ |w_i|², w_i = P_iᵀ τ_i + (S_i P_i)ᵀ f_i, f_π += f_i − C_i w_i. τ in the problem's order of degrees of
+  /// freedom; `work` needs a Six<T> per body. Cost about 24 operations per degree of freedom.
+  T energy(const T* tau, T* work) const;
+
   [[nodiscard]] Index bytes() const;
 
  private:

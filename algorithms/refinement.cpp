@@ -5,16 +5,19 @@
 
 namespace delassus {
 
-template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> structure) {
+template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> structure, Mass mass) {
   structure_ = std::move(structure);
   residual_.analyze(structure_);
+  weights_.analyze(*structure_);
+  mass_ = mass;
+  if (mass_ == Mass::factored_elsewhere) return;
   plan_M_ = make_plan(*structure_, Matrix::M, Branches::all);
   factor_M_.analyze(*structure_, plan_M_);
-  weights_.analyze(*structure_);
 }
 
 template <class T> Report Refinement<T>::update(const Problem<T>& problem) {
   residual_.update(problem);
+  if (mass_ == Mass::factored_elsewhere) return {};
   const Report started = factor_M_.start(problem);
   return started.ok() ? factor_M_.update_undamped() : started;
 }
@@ -27,7 +30,7 @@ template <class T> void Refinement<T>::update_damping(const Damping<T>& damping)
 namespace {
 template <class X> double magnitude(const X& x) { return std::abs(static_cast<double>(x)); }
 
-// The larger one; a NaN is kept.
+// The larger one; b when it is not a number.
 double larger(double a, double b) { return b <= a ? a : b; }
 
 // By how much a correction is smaller than the one before it, at most 1.
@@ -74,11 +77,10 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
 }
 
 // B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
-template <class T> double Refinement<T>::certify(Buffers& b) const {
-  if (!invertible_.ok()) return -1;
+template <class T> double Refinement<T>::bound(Buffers& b, T energy) const {
   weights_.multiply(b.r2, b.scratch);
   const T at_rows = dot(b.r2, b.scratch, b.m), total = dot(b.f, b.a, b.m);
-  const T squared = at_rows + factor_M_.energy(b.r1, b.rest);
+  const T squared = at_rows + energy;
   const double bound = std::sqrt(magnitude(squared)), s = static_cast<double>(total);
   if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
   const double t = relative(bound, std::sqrt(s));
@@ -86,7 +88,7 @@ template <class T> double Refinement<T>::certify(Buffers& b) const {
 }
 
 template <class T> Index Refinement<T>::workspace(Index of_correction) const {
-  return Buffers::size(*structure_) + std::max({factor_M_.workspace(), residual_.workspace(), of_correction});
+  return Buffers::size(*structure_) + std::max({mass_ == Mass::factored_here ? factor_M_.workspace() : 0, residual_.workspace(), of_correction});
 }
 
 template <class T> Index Refinement<T>::bytes() const {

@@ -36,15 +36,18 @@ template <class T> class Refinement {
  public:
   using W = Wide<T>;
 
-  void analyze(std::shared_ptr<const Structure> structure);
-  /// Report: lost_pivot of M.
+  /// Who factors M for the certificate: this class, or whoever gives solve_with the energy.
+  enum class Mass : std::uint8_t { factored_here, factored_elsewhere };
+
+  void analyze(std::shared_ptr<const Structure> structure, Mass mass = Mass::factored_here);
+  /// Report: lost_pivot of M, where it is factored here.
   [[nodiscard]] Report update(const Problem<T>& problem);
   void update_damping(const Damping<T>& damping);
 
   /// R, or in what row it does not exist.
   [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
   [[nodiscard]] const Report& invertible() const { return invertible_; }
-  /// The factor of M, every joint active.
+  /// The factor of M, every joint active, where it is factored here.
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
   struct Steps {
@@ -56,7 +59,14 @@ template <class T> class Refinement {
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
   /// accuracy was not reached, with the iterate it came to; not_finite.
   template <class Correct>
-  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr) const;
+  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr) const {
+    const auto energy = [this](const T* tau, T* rest) { return factor_M_.energy(tau, rest); };
+    return solve_with(a, f, wanted, steps, correct, energy, work, nu);
+  }
+  /// The same with `energy(τ, work)` = τᵀM⁻¹τ.
+  template <class Correct, class Energy>
+  Report solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
+                    T* nu = nullptr) const;
 
   [[nodiscard]] Index workspace(Index of_correction) const;
   [[nodiscard]] Index bytes() const;
@@ -71,10 +81,14 @@ template <class T> class Refinement {
   };
   Progress start(Buffers& b) const;
   Progress advance(Buffers& b, const Progress& before) const;
-  double certify(Buffers& b) const;
+  template <class Energy> double certify(Buffers& b, const Energy& energy) const {
+    return invertible_.ok() ? bound(b, energy(b.r1, b.rest)) : -1;
+  }
+  double bound(Buffers& b, T energy) const;
 
   std::shared_ptr<const Structure> structure_;
   KktResidual<T> residual_;
+  Mass mass_ = Mass::factored_here;
   Plan plan_M_;
   Factor<T> factor_M_;
   BlockDiagonal<T> weights_;
@@ -105,8 +119,9 @@ template <class T> struct Refinement<T>::Buffers {
 };
 
 template <class T>
-template <class Correct>
-Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu) const {
+template <class Correct, class Energy>
+Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
+                                 T* work, T* nu) const {
   Buffers b(*structure_, a, work);
   correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
   Progress now = start(b), before = now;
@@ -116,11 +131,11 @@ Report Refinement<T>::solve(const T* a, T* f, Accuracy wanted, Steps steps, cons
     // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
     if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
     else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
-    if (done || wanted.error > 0) report.error_bound = certify(b);
+    if (done || wanted.error > 0) report.error_bound = certify(b, energy);
     if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
     if (report.iterations == steps.most || diverges) {
-      report.error_bound = certify(b);
+      report.error_bound = certify(b, energy);
       report.status = Status::not_converged;
       break;
     }

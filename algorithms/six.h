@@ -64,7 +64,7 @@ template <class T> [[nodiscard]] inline Six<T> load(const T* x, int n) {
   return y;
 }
 /// The k-th unit vector.
-template <class T> [[nodiscard]] inline Six<T> unit(int k) {
+template <class T> [[nodiscard]] inline Six<T> unit_vector(int k) {
   Six<T> y = Six<T>::zero();
   y.v[k] = T(1);
   return y;

@@ -39,6 +39,9 @@ template <class T> class SquareRootFactor {
   /// r2 may be the same, and dnu and r1.
   void solve_kkt(const T* r1, const T* r2, T* dnu, T* dlambda, T* work) const;
 
+  /// The root of M alone.
+  [[nodiscard]] const MassRoot<T>& mass() const { return mass_; }
+
   [[nodiscard]] Index workspace() const;
   [[nodiscard]] Index bytes() const;
 
