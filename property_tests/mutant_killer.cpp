@@ -1,7 +1,7 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
 // refusals of misuse, that what an operator was used for before leaves no trace, that a lost pivot is named in every phase
 // until there are better numbers; and, when named like operators: every number of a plan (`plans`), the functions of Factor
-// and KktResidual (`kernels`), those of Refinement (`refinement`).
+// and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`).
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -27,6 +27,7 @@
 #include "property_tests/allocations.h"
 #include "property_tests/kernels.h"
 #include "property_tests/known.h"
+#include "property_tests/krylov.h"
 #include "property_tests/laws.h"
 #include "property_tests/misuse.h"
 #include "property_tests/plan_model.h"
@@ -71,7 +72,7 @@ Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Cas
 /// Exact laws of every problem first: they need no bound and know no excuse.
 std::vector<Check> checks(std::vector<std::string_view> names) {
   const auto asked = [&names](std::string_view part) { return std::erase(names, part) > 0; };
-  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement");
+  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement"), of_krylov = asked("krylov");
   static std::vector<laws::Case> cases;
   for (const Pinned& pinned : problems) cases.push_back(laws::make_case(pinned.family, pinned.n, pinned.seed));
   cases.push_back(laws::with_partial_blocks(laws::make_case("generic", 4, 1), 1));
@@ -87,6 +88,8 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
         all.push_back([s, matrix, branches] { return plan_broken(make_plan(*s, matrix, branches), *s, matrix, branches); });
   }
   if (of_refinement) all.push_back([long_chain = laws::make_case("chain", 12, 1)] { return laws::refinement_wrong(long_chain); });
+  for (const std::string_view op_name : names)
+    if (of_krylov) all.push_back([op_name] { return laws::krylov_wrong(find_operator(op_name)); });
   for (const laws::Case& c : cases)
     if (of_kernels && c.exact) all.push_back([&c] { return laws::kernel_wrong(c); });
   for (const laws::Case& c : cases)
