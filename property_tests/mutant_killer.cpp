@@ -1,7 +1,7 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
 // refusals of misuse, that what an operator was used for before leaves no trace, that a lost pivot is named in every phase
 // until there are better numbers; and, when named like operators: every number of a plan (`plans`), the functions of Factor
-// and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`).
+// and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`), dependent hard rows (`dependent`).
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -72,13 +72,14 @@ Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Cas
 /// Exact laws of every problem first: they need no bound and know no excuse.
 std::vector<Check> checks(std::vector<std::string_view> names) {
   const auto asked = [&names](std::string_view part) { return std::erase(names, part) > 0; };
-  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement"), of_krylov = asked("krylov");
+  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement"), of_krylov = asked("krylov"), of_dependent = asked("dependent");
   static std::vector<laws::Case> cases;
   for (const Pinned& pinned : problems) cases.push_back(laws::make_case(pinned.family, pinned.n, pinned.seed));
   cases.push_back(laws::with_partial_blocks(laws::make_case("generic", 4, 1), 1));
   cases.push_back(laws::with_partial_blocks(laws::make_case("joint_friction", 3, 1), 4));
   cases.push_back(laws::without_freedoms());
   cases.push_back(laws::rows_on_a_free_joint());
+  cases.push_back(laws::three_rows_on_one_freedom());
   std::vector<Check> all, rest;
   for (const Pinned& planned : plans) {
     if (!of_plans) break;
@@ -87,7 +88,10 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
       for (const Branches branches : {Branches::with_rows, Branches::all})
         all.push_back([s, matrix, branches] { return plan_broken(make_plan(*s, matrix, branches), *s, matrix, branches); });
   }
+  if (of_refinement) all.push_back(laws::stray_motion_wrong);
   if (of_refinement) all.push_back([long_chain = laws::make_case("chain", 12, 1)] { return laws::refinement_wrong(long_chain); });
+  for (const std::string_view op_name : names)
+    if (of_dependent) all.push_back([op_name] { return laws::dependent_rows_wrong(find_operator(op_name)); });
   for (const std::string_view op_name : names)
     if (of_krylov) all.push_back([op_name] { return laws::krylov_wrong(find_operator(op_name)); });
   for (const laws::Case& c : cases)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "algorithms/refinement.h"
 #include "property_tests/route.h"
@@ -165,7 +166,7 @@ std::string zero_missed(const Model& model, const Refinement<double>& refinement
   return r.ok() && r.iterations == 1 && certain && f.isZero(0) ? "" : "the answer to zero";
 }
 
-std::string calls_wrong(const Case& c) {
+std::string calls_wrong(const Case& c, const std::vector<Asked>& calls) {
   const Model model(c);
   Refinement<double> refinement;
   refinement.analyze(c.problem.structure);
@@ -173,14 +174,11 @@ std::string calls_wrong(const Case& c) {
   refinement.update_damping(c.damping);
   Workspace<double> work(refinement.workspace(0));
   work.fill(std::numeric_limits<double>::quiet_NaN());
-  const Asked calls[] = {{0.55, 0.55}, {0.3, 0.3}, {0.7, 0.7}, {0, 0}, {0.55, 0.55, 0, 100, true}, {0.7, 0.7, 0, 200, true}, {0.3, 0.3, 0, 100, true},
-                         {0.55, 0.55, 1e-3}, {0.125, 0.25, 1e-7}, {0.5, 0.125, 1e-5}, {0.55, 0.55, 1e-30}, {0.5, 0.25, 0, 3}, {0.125, 0.5, 1e-9, 3}, {0.5, 0.5, 0, 0},
-                         {-2, -2}, {-2, -2, 0, 1}, {0.7, 0.55}, {0.25, 0.25, std::numeric_limits<double>::infinity()}};
   for (const Asked& asked : calls) {
     // Without a certificate it goes on to the end, where rounding of the slower part hides how fast the other one is.
     if (!refinement.invertible().ok() && asked.wanted > 0 && asked.motion != asked.force) continue;
     const std::string words = differs(model, refinement, asked, work);
-    if (!words.empty()) return "Refinement, call " + std::to_string(&asked - calls) + ", " + words + " on " + c.label;
+    if (!words.empty()) return "Refinement, call " + std::to_string(&asked - calls.data()) + ", " + words + " on " + c.label;
   }
   const std::string words = zero_missed(model, refinement, work);
   return words.empty() ? not_finite_missed(model, refinement, work) : words;
@@ -189,11 +187,44 @@ std::string calls_wrong(const Case& c) {
 }  // namespace
 
 std::string refinement_wrong(const Case& c) {
-  Case soft = make_case(c.problem, c.damping, c.label + ", softer", c.seed);
-  for (double& d : soft.damping.diagonal) d *= 1024;
-  for (auto& b : soft.damping.blocks) b.R_inverse *= 1024;
-  const std::string words = calls_wrong(c);
-  return words.empty() ? calls_wrong(soft) : words;
+  const std::vector<Asked> calls = {{0.55, 0.55}, {0.3, 0.3}, {0.7, 0.7}, {0, 0}, {0.55, 0.55, 0, 100, true}, {0.7, 0.7, 0, 200, true}, {0.3, 0.3, 0, 100, true},
+                         {0.55, 0.55, 1e-3}, {0.125, 0.25, 1e-7}, {0.5, 0.125, 1e-5}, {0.55, 0.55, 1e-30}, {0.5, 0.25, 0, 3}, {0.125, 0.5, 1e-9, 3}, {0.5, 0.5, 0, 0},
+                         {-2, -2}, {-2, -2, 0, 1}, {0.7, 0.55}, {0.25, 0.25, std::numeric_limits<double>::infinity()}, {0, 1e-8}};
+  std::string words;
+  for (const double softer : {1.0, 0x1p10}) {
+    Case soft = make_case(c.problem, c.damping, c.label + (softer > 1 ? ", softer" : ""), c.seed);
+    for (double& d : soft.damping.diagonal) d *= softer;
+    for (auto& b : soft.damping.blocks) b.R_inverse *= softer;
+    if (words.empty()) words = calls_wrong(soft, calls);
+  }
+  return words;
+}
+
+std::string stray_motion_wrong() {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(1, {0});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  p.H[0].diagonal().setOnes();
+  p.S[0][0] = p.K[0][0] = 1;
+  Refinement<double> refinement;
+  refinement.analyze(p.structure);
+  if (!refinement.update(p).ok()) return "update";
+  refinement.update_damping(Damping<double>::uniform(1, 1));
+  Workspace<double> work(refinement.workspace(0));
+  for (const bool patient : {false, true}) {
+    const double motion[] = {0.5, 0, 1e-30}, force[] = {0.375, 0.125, 0}, a = 1;
+    double f = 0;
+    int calls = 0;
+    const auto correct = [&](const double*, const double*, double* d_nu, double* d_lambda, double*) {
+      *d_nu = calls < 3 ? motion[calls] : 0;
+      *d_lambda = calls < 3 ? force[calls] : 0;
+      ++calls;
+    };
+    const Report r = refinement.solve(&a, &f, Accuracy::full(), {100, patient}, correct, work.data());
+    if (!r.ok() || r.iterations != 2 || f != 0.5) return "Refinement: a stray correction of ν, " + std::to_string(r.iterations) + " steps";
+  }
+  return {};
 }
 
 }  // namespace delassus::laws

@@ -160,6 +160,17 @@ Case rows_on_a_free_joint() {
   return make_case(std::move(p), Damping<double>::uniform(4, 0.25), "rows on a free joint", 1, true);
 }
 
+Case three_rows_on_one_freedom() {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(3, {0});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  p.H[0].diagonal() << 2, 3, 4, 5, 5, 5;
+  p.S[0] << 0, 0, 1, 0, 1, 0;
+  for (Index r = 0; r < 3; ++r) p.K[static_cast<std::size_t>(r)] << 1, 0, 0.5, 0, static_cast<double>(r + 1), 2;
+  return make_case(std::move(p), {{0, 0.5, 0.25}, {}}, "three rows on one freedom", 1, true);
+}
+
 std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c) {
   const auto fresh = row.make<double>(), used = row.make<double>();
   fresh->analyze(c.problem.structure);
@@ -196,6 +207,53 @@ std::string lost_pivot_forgotten(const OperatorRow& row, bool held) {
     if (words.empty() && std::get<Maker<Rational>>(row.makers)) words = forgotten<Rational>(row, problem, Damping<double>::uniform(3, 0.5), held);
   }
   return words;
+}
+
+std::string dependent_rows_wrong(const OperatorRow& row) {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(3, {0});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  p.H[0].diagonal().setOnes();
+  p.S[0][0] = p.K[0][0] = p.K[1][0] = 1;
+  p.K[2][0] = 2;
+  const bool refused = row.name == "dense_refined";
+  const Damping<double> hard = Damping<double>::uniform(3, 0);
+  Damping<double> block = hard;
+  block.blocks = {{0, MatrixX<double>::Constant(2, 2, -0.5)}};
+  block.blocks[0].R_inverse.diagonal().setConstant(0.5);
+  const auto op = row.make<double>();
+  op->analyze(p.structure);
+  if (!op->update(p, hard).ok()) return "update";
+  Workspace<double> w(op->workspace(1));
+  w.fill(0.75);
+  MatrixX<double> f(3, 1);
+  const auto ask = [&](const Damping<double>& damping, double first, double second) {
+    MatrixX<double> a(3, 1);
+    a << first, second, 2;
+    f.setConstant(0.75);
+    static_cast<void>(op->update_damping(damping));
+    return op->solve(a, f, w);
+  };
+  struct Call {
+    const char* what;
+    const Damping<double>& damping;
+    double first, second;
+    Status status;
+    Index where;
+  };
+  const Status lost = Status::lost_pivot;
+  const Damping<double> soft = Damping<double>::uniform(3, 0.5);
+  for (const Call& c : {Call{"consistent", hard, 1, 1, refused ? lost : Status::ok, 0}, Call{"first row", hard, 2, 1, refused ? lost : Status::inconsistent, 0},
+                        Call{"second row", hard, 1, 2, refused ? lost : Status::inconsistent, refused ? 0 : 1}, Call{"soft", soft, 2, 1, Status::ok, -1},
+                        Call{"singular block", block, 1, 1, lost, 0}}) {
+    const Report r = ask(c.damping, c.first, c.second);
+    if (r.status != c.status || (!r.ok() && r.where != c.where))
+      return std::string(row.name) + ", dependent rows, " + c.what + ": " + std::string(name(r.status)) + " at " + std::to_string(r.where);
+    if (&c.damping == &hard && r.ok() && (f(0, 0) != 0 || f(1, 0) != 0 || f(2, 0) != 0.5)) return std::string(row.name) + ": forces of dependent rows";
+  }
+  if (ask(Damping<double>::uniform(3, 0x1p-70), 1, 1).status == lost) return std::string(row.name) + ": a damped row lost";
+  return {};
 }
 
 }  // namespace delassus::laws

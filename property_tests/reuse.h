@@ -18,6 +18,9 @@ namespace delassus::laws {
 /// Two rows on the six freedoms of a free body, two between it and another one.
 [[nodiscard]] Case rows_on_a_free_joint();
 
+/// A hard row and two soft ones, on one freedom: A is regular, and there are more rows than freedoms.
+[[nodiscard]] Case three_rows_on_one_freedom();
+
 /// What an operator still knows of its use for `before` when it is analyzed, updated, damped and asked for `c`; empty: the
 /// bits and reports are those of a fresh one, and nothing was written behind the workspace.
 [[nodiscard]] std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c);
@@ -26,5 +29,9 @@ namespace delassus::laws {
 /// `held`: whether the tip carries the constraint, so that its step is active. A zero damping is forgotten the same way.
 /// In words what is not so, in double or in rational numbers; empty: nothing.
 [[nodiscard]] std::string lost_pivot_forgotten(const OperatorRow& row, bool held);
+
+/// Three hard rows on one freedom, for kkt_elimination and dense_refined: which rows are left out or refused, what is
+/// inconsistent, that a singular block of R⁻¹ is lost but a small damping is not. In words; empty: nothing.
+[[nodiscard]] std::string dependent_rows_wrong(const OperatorRow& row);
 
 }  // namespace delassus::laws

@@ -42,5 +42,11 @@ TEST(Reuse, LawsHoldWithoutFreedoms) { expect_laws(without_freedoms()); }
 
 TEST(Reuse, LawsHoldForRowsOnAFreeJoint) { expect_laws(rows_on_a_free_joint()); }
 
+TEST(Reuse, DependentRows) {
+  for (const std::string_view name : {"kkt_elimination", "dense_refined"}) EXPECT_EQ(dependent_rows_wrong(find_operator(name)), "");
+}
+
+TEST(Reuse, LawsHoldForMoreRowsThanFreedoms) { expect_laws(three_rows_on_one_freedom()); }
+
 }  // namespace
 }  // namespace delassus::laws
