@@ -5,6 +5,8 @@
 #include <random>
 
 #include "algorithms/delassus.h"
+#include "algorithms/factor.h"
+#include "algorithms/mass_root.h"
 #include "algorithms/square_root_factor.h"
 #include "generators/build.h"
 #include "generators/families.h"
@@ -231,6 +233,25 @@ TEST(WeightRoot, IsARootAndNamesTheRowItDoesNotExistIn) {
   const Report report = root.assign(damping);
   EXPECT_EQ(report.status, Status::zero_damping);
   EXPECT_EQ(report.where, damping.blocks[0].row);
+}
+
+TEST(MassRoot, EnergyIsThatOfTheFactor) {
+  for (const char* family : {"generic", "several_trees", "random_tree", "joint_friction"}) {
+    const Problem<double> p = generators::build(generators::find_family(family).make(6, 1)).problem;
+    const Plan plan = make_plan(*p.structure, Matrix::M, Branches::all);
+    Factor<double> factor;
+    MassRoot<double> root;
+    factor.analyze(*p.structure, plan);
+    root.analyze(*p.structure, plan);
+    ASSERT_TRUE(factor.start(p).ok() && factor.update_undamped().ok() && root.update(p).ok());
+    Workspace<double> of_factor(factor.workspace()), of_root(static_cast<Index>(6 * sizeof(Six<double>)) * p.structure->bodies());
+    of_root.fill(0.75);
+    std::vector<double> tau(static_cast<std::size_t>(p.structure->dofs()));
+    for (std::size_t c = 0; c < tau.size(); ++c) tau[c] = c % 3 == 0 ? -1 : 0.5 + 0.125 * static_cast<double>(c);
+    const double expected = factor.energy(tau.data(), of_factor.data()), got = root.energy(tau.data(), of_root.data());
+    const auto one = [](double x) { return MatrixX<Quad>::Constant(1, 1, Quad(x)); };  // half the digits: M is not near singular
+    EXPECT_TRUE(judge(one(got - expected), one(expected), unit_roundoff<float>, "itself").passed()) << family << ": " << got << " for " << expected;
+  }
 }
 
 }  // namespace
