@@ -88,7 +88,7 @@ void KktEliminationWith<T, policy>::solve_multipliers(const T* right, T* lambda,
 
 // A δλ = r₂ − J M⁻¹ r₁;  δν = M⁻¹(r₁ + Jᵀδλ)
 template <class T, Dependent policy>
-void KktEliminationWith<T, policy>::correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
+void KktEliminationWith<T, policy>::solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
   const Index m = this->size();
   T* const right = work + refinement_.factor_M().workspace();
   T* const rate = right + padded(m);
@@ -121,7 +121,7 @@ template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   if (!undamped_.ok()) return undamped_;
   if (!factored_.ok()) return factored_;
-  const Report report = refinement_.solve(a, f, wanted, {max_steps}, [this](auto... args) { correct(args...); }, workspace);
+  const Report report = refinement_.solve(a, f, wanted, {max_steps}, [this](auto... args) { solve_kkt(args...); }, workspace);
   const Report consistent = check_dependent(a, f);
   return consistent.ok() ? report : consistent;
 }

@@ -26,6 +26,9 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
  public:
   static constexpr int max_steps = 5;
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
+  /// The elimination alone: M d_nu − Jᵀd_lambda = r1, J d_nu + R⁻¹d_lambda = r2 on the rows not left out. Shapes n, m, n, m;
+  /// `work` as for solve.
+  void solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
 
  protected:
   void do_analyze() override;
@@ -37,7 +40,6 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   [[nodiscard]] Index do_bytes() const override;
 
  private:
-  void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
   void solve_multipliers(const T* right, T* lambda, T* work) const;
   [[nodiscard]] Report check_dependent(const T* a, const T* f) const;
 

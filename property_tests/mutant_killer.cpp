@@ -1,7 +1,8 @@
 // What kills mutants (mutate.py): every law on small pinned problems, until one fails. It also holds what no law looks at:
 // refusals of misuse, that what an operator was used for before leaves no trace, that a lost pivot is named in every phase
 // until there are better numbers; and, when named like operators: every number of a plan (`plans`), the functions of Factor
-// and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`), dependent hard rows (`dependent`).
+// and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`), dependent hard rows (`dependent`),
+// what solves (K) once (`capped`, `elimination`, `square_root` with the unit tests of that part).
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //
@@ -23,6 +24,8 @@
 #include <sstream>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "generators/build.h"
 #include "property_tests/allocations.h"
 #include "property_tests/kernels.h"
@@ -30,7 +33,9 @@
 #include "property_tests/krylov.h"
 #include "property_tests/laws.h"
 #include "property_tests/misuse.h"
+#include "property_tests/one_solve.h"
 #include "property_tests/plan_model.h"
+#include "property_tests/rank.h"
 #include "property_tests/refinement_model.h"
 #include "property_tests/reuse.h"
 #include "property_tests/summary.h"
@@ -69,10 +74,47 @@ Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Cas
   return words.str();
 }
 
+/// What a unit test says first; empty: it passes.
+class FirstFailure : public testing::EmptyTestEventListener {
+ public:
+  static Words of(const std::string& test) {
+    static FirstFailure* const one = listening();
+    one->words_.clear();
+    testing::GTEST_FLAG(filter) = test;
+    return RUN_ALL_TESTS() == 0 ? "" : test + ": " + one->words_;
+  }
+  /// Names of the unit tests that are compiled in.
+  static std::vector<std::string> tests() {
+    std::vector<std::string> names;
+    const testing::UnitTest& all = *testing::UnitTest::GetInstance();
+    for (int k = 0; k < all.total_test_suite_count(); ++k)
+      for (int l = 0; l < all.GetTestSuite(k)->total_test_count(); ++l)
+        names.push_back(std::string(all.GetTestSuite(k)->name()) + "." + all.GetTestSuite(k)->GetTestInfo(l)->name());
+    return names;
+  }
+
+ private:
+  static FirstFailure* listening() {
+    int count = 1;
+    char program[] = "mutant_killer", *arguments[] = {program, nullptr};
+    testing::InitGoogleTest(&count, arguments);
+    testing::TestEventListeners& all = testing::UnitTest::GetInstance()->listeners();
+    delete all.Release(all.default_result_printer());
+    auto* const one = new FirstFailure;
+    all.Append(one);  // which owns it
+    return one;
+  }
+  void OnTestPartResult(const testing::TestPartResult& r) override {
+    if (r.failed() && words_.empty()) words_ = r.summary();
+  }
+  Words words_;
+};
+
 /// Exact laws of every problem first: they need no bound and know no excuse.
 std::vector<Check> checks(std::vector<std::string_view> names) {
   const auto asked = [&names](std::string_view part) { return std::erase(names, part) > 0; };
-  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement"), of_krylov = asked("krylov"), of_dependent = asked("dependent");
+  const bool of_plans = asked("plans"), of_kernels = asked("kernels"), of_refinement = asked("refinement"), of_krylov = asked("krylov"), of_dependent = asked("dependent"),
+             of_capped = asked("capped"), of_elimination = asked("elimination"), of_square_root = asked("square_root");
   static std::vector<laws::Case> cases;
   for (const Pinned& pinned : problems) cases.push_back(laws::make_case(pinned.family, pinned.n, pinned.seed));
   cases.push_back(laws::with_partial_blocks(laws::make_case("generic", 4, 1), 1));
@@ -93,7 +135,16 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
   for (const std::string_view op_name : names)
     if (of_dependent) all.push_back([op_name] { return laws::dependent_rows_wrong(find_operator(op_name)); });
   for (const std::string_view op_name : names)
-    if (of_krylov) all.push_back([op_name] { return laws::krylov_wrong(find_operator(op_name)); });
+    if (of_krylov && op_name.starts_with("cg")) all.push_back([op_name] { return laws::krylov_wrong(find_operator(op_name)); });
+  if (of_capped) all.push_back(laws::capped_inverse_limits_wrong);
+  for (const laws::Case& c : cases) {
+    if (!c.exact || why_no_bound(laws::Function::apply, c)) continue;
+    if (of_capped) all.push_back([&c] { return laws::capped_inverse_wrong(c); });
+    if (of_elimination) all.push_back([&c] { return laws::elimination_wrong(c); });
+    if (of_square_root && damped(c)) all.push_back([&c] { return laws::square_root_wrong(c); });
+  }
+  if (of_square_root)
+    for (const std::string& test : FirstFailure::tests()) all.push_back([test] { return FirstFailure::of(test); });
   for (const laws::Case& c : cases)
     if (of_kernels && c.exact) all.push_back([&c] { return laws::kernel_wrong(c); });
   for (const laws::Case& c : cases)

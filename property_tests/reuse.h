@@ -30,8 +30,4 @@ namespace delassus::laws {
 /// In words what is not so, in double or in rational numbers; empty: nothing.
 [[nodiscard]] std::string lost_pivot_forgotten(const OperatorRow& row, bool held);
 
-/// Three hard rows on one freedom, for kkt_elimination and dense_refined: which rows are left out or refused, what is
-/// inconsistent, that a singular block of R⁻¹ is lost but a small damping is not. In words; empty: nothing.
-[[nodiscard]] std::string dependent_rows_wrong(const OperatorRow& row);
-
 }  // namespace delassus::laws

@@ -1,6 +1,9 @@
 // Operators used for one problem after another; laws where blocks of the damping cover parts of constraints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "property_tests/defects_wrong.h"
 #include "property_tests/reuse.h"
 
 namespace delassus::laws {
@@ -42,11 +45,19 @@ TEST(Reuse, LawsHoldWithoutFreedoms) { expect_laws(without_freedoms()); }
 
 TEST(Reuse, LawsHoldForRowsOnAFreeJoint) { expect_laws(rows_on_a_free_joint()); }
 
-TEST(Reuse, DependentRows) {
-  for (const std::string_view name : {"kkt_elimination", "dense_refined"}) EXPECT_EQ(dependent_rows_wrong(find_operator(name)), "");
+TEST(Reuse, LawsHoldForMoreRowsThanFreedoms) { expect_laws(three_rows_on_one_freedom()); }
+
+/// As if A had no more independent rows than there are freedoms: the others get no force.
+OperatorRow rank_of_freedoms() {
+  return defect<Place::answer>("rank_of_freedoms", "", [](auto a) {
+           if (a.solve && a.s.rows > a.s.dofs()) a.y.bottomRows(a.s.rows - a.s.dofs()).setZero();
+         }).op;
 }
 
-TEST(Reuse, LawsHoldForMoreRowsThanFreedoms) { expect_laws(three_rows_on_one_freedom()); }
+TEST(Reuse, MoreRowsThanFreedomsCanFail) {
+  const std::vector<Outcome> all = check(rank_of_freedoms(), three_rows_on_one_freedom());
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Outcome& o) { return o.failed(); }));
+}
 
 }  // namespace
 }  // namespace delassus::laws

@@ -212,27 +212,66 @@ TEST(SquareRootFactor, NamesTheFreedomWithoutInertia) {
   EXPECT_EQ(dependent.where, 2);
 }
 
-TEST(WeightRoot, IsARootAndNamesTheRowItDoesNotExistIn) {
-  const auto built = generators::build(generators::find_family("block_damping").make(6, 1));
-  const Structure& s = *built.problem.structure;
-  WeightRoot<double> root;
-  root.analyze(s);
-  ASSERT_TRUE(root.assign(built.damping).ok());
+// z = Wᵀ W x against x = R⁻¹ z.
+void expect_root(const WeightRoot<double>& root, const Structure& s, const Damping<double>& damping) {
   const MatrixX<double> x = random_columns(s.rows, 3);
   MatrixX<double> y = x, z = x;
   root.multiply(x.data(), y.data());
-  root.multiply_transposed(y.data(), z.data());  // z = R x
-  const MatrixX<Quad> R_inverse = reference::damping_matrix<Quad>(s, built.damping.cast<Quad>());
+  root.multiply_transposed(y.data(), z.data());
+  const MatrixX<Quad> R_inverse = reference::damping_matrix<Quad>(s, damping.cast<Quad>());
   const MatrixX<Quad> error = R_inverse * z.cast<Quad>() - x.cast<Quad>();
   const Quad bound = Quad(static_cast<double>(s.rows)) * norm(R_inverse) * largest(z.cast<Quad>());
   EXPECT_TRUE(judge(error, MatrixX<Quad>::Constant(s.rows, 1, bound), unit_roundoff<double>, "m ‖R⁻¹‖ ‖z‖").passed());
+}
 
-  Damping<double> damping = built.damping;
-  ASSERT_FALSE(damping.blocks.empty());
-  damping.blocks[0].R_inverse.setZero();
-  const Report report = root.assign(damping);
-  EXPECT_EQ(report.status, Status::zero_damping);
-  EXPECT_EQ(report.where, damping.blocks[0].row);
+TEST(WeightRoot, IsARootOfWhatItWasAssignedLast) {
+  const auto built = generators::build(generators::find_family("block_damping").make(6, 1));
+  const Structure& s = *built.problem.structure;
+  ASSERT_FALSE(built.damping.blocks.empty());
+  WeightRoot<double> root;
+  root.analyze(s);
+  for (const Damping<double>& damping : {built.damping, Damping<double>::uniform(s.rows, 0.3), built.damping}) {
+    ASSERT_TRUE(root.assign(damping).ok());
+    expect_root(root, s, damping);
+  }
+}
+
+TEST(WeightRoot, NamesTheRowItDoesNotExistIn) {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(3, {0});
+  s.add_joint_constraint(3, 0);
+  WeightRoot<double> root;
+  root.analyze(s);
+  for (Index row = 0; row < 6; ++row) {
+    auto damping = Damping<double>::uniform(6, 1.0);
+    damping.diagonal[row] = 0;
+    const Report plain = root.assign(damping);
+    EXPECT_TRUE(plain.status == Status::zero_damping && plain.where == row) << row << ": " << plain.where;
+    damping.blocks = {{row / 3 * 3, MatrixX<double>::Identity(3, 3)}};
+    damping.blocks[0].R_inverse(row % 3, row % 3) = 0;
+    const Report block = root.assign(damping);
+    EXPECT_TRUE(block.status == Status::zero_damping && block.where == row) << row << ": " << block.where;
+  }
+}
+
+// A pivot of 28 or 29 units of 2⁻⁵² where 30 eps of its diagonal are 28.4.
+TEST(MassRoot, APivotIsLostAt30EpsOfItsDiagonal) {
+  auto structure = std::make_shared<Structure>();
+  structure->add_body(ground, 1);
+  structure->add_body(0, 2);
+  Problem<double> p(structure);
+  for (auto& H : p.H) H.diagonal().setOnes();
+  p.S[0][1] = p.S[1][0] = 1;
+  p.S[2][0] = 1.375;
+  const Plan plan = make_plan(*structure, Matrix::M, Branches::all);
+  MassRoot<double> root;
+  root.analyze(*structure, plan);
+  p.armature[2] = 29 * 0x1p-52;
+  EXPECT_TRUE(root.update(p).ok());
+  p.armature[2] = 28 * 0x1p-52;
+  const Report lost = root.update(p);
+  EXPECT_TRUE(lost.status == Status::lost_pivot && lost.where == 2) << lost.where;
 }
 
 TEST(MassRoot, EnergyIsThatOfTheFactor) {

@@ -1,0 +1,80 @@
+// Dependent hard rows, and that the tests of them can fail.
+#include <gtest/gtest.h>
+
+#include "property_tests/defects_wrong.h"
+#include "property_tests/rank.h"
+
+namespace delassus::laws {
+namespace {
+
+TEST(Rank, DependentRows) {
+  for (const std::string_view name : {"kkt_elimination", "dense_refined"}) EXPECT_EQ(dependent_rows_wrong(find_operator(name)), "");
+}
+
+enum class Defect : std::uint8_t { none, contradictions_answered, last_row_named, damped_rows_left_out };
+
+/// kkt_elimination with a defect.
+template <Defect defect> class Careless final : public Operator<double> {
+ public:
+  [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return inner_->dependent_rows(); }
+
+ protected:
+  void do_analyze() override { inner_->analyze(this->structure()); }
+  Report do_update(const Problem<double>& p, const Damping<double>& d) override { return inner_->update(p, seen(d)); }
+  Report do_update_damping(const Damping<double>& d) override { return inner_->update_damping(seen(d)); }
+  Report do_solve(ConstRef<double> a, Ref<double> f, double* work) const override {
+    Workspace<double> w(work, inner_->workspace(1));
+    Report r = inner_->solve(a, f, w);
+    if (defect == Defect::contradictions_answered && r.status == Status::inconsistent) r = {};
+    if (defect == Defect::last_row_named && !r.ok()) r.where = a.rows() - 1;
+    return r;
+  }
+  [[nodiscard]] Index do_workspace(Index) const override { return inner_->workspace(1); }
+  [[nodiscard]] Index do_bytes() const override { return inner_->bytes(); }
+
+ private:
+  static Damping<double> seen(Damping<double> d) {
+    for (double& x : d.diagonal)
+      if (defect == Defect::damped_rows_left_out && x < 0x1p-30) x = 0;
+    return d;
+  }
+  std::unique_ptr<Operator<double>> inner_ = find_operator("kkt_elimination").make<double>();
+};
+
+template <Defect defect> OperatorRow careless() {
+  OperatorRow row = find_operator("kkt_elimination");
+  std::get<Maker<double>>(row.makers) = []() -> std::unique_ptr<Operator<double>> { return std::make_unique<Careless<defect>>(); };
+  return row;
+}
+
+TEST(Rank, DependentRowsCanFail) {
+  EXPECT_EQ(dependent_rows_wrong(careless<Defect::none>()), "");
+  EXPECT_NE(dependent_rows_wrong(careless<Defect::contradictions_answered>()), "");
+  EXPECT_NE(dependent_rows_wrong(careless<Defect::last_row_named>()), "");
+  EXPECT_NE(dependent_rows_wrong(careless<Defect::damped_rows_left_out>()), "");
+  OperatorRow refusing = find_operator("dense_refined");
+  refusing.name = "kkt_elimination";
+  EXPECT_NE(dependent_rows_wrong(refusing), "");
+}
+
+/// Rows that contradict one another, answered in silence with the forces of R⁻¹ + 2^softness.
+template <int softness> OperatorRow softened() {
+  return defect<Place::damping>("softened", "", [](auto d) {
+           using T = scalar_of<decltype(d)>;
+           for (T& x : d.d.diagonal)
+             if constexpr (!ScalarTraits<T>::exact) x += T(std::ldexp(1.0, softness));
+         }).op;
+}
+
+TEST(Rank, RefusalsCanFail) {
+  const Case c = make_case("hard_redundant", 2, 1);  // the bound is about 2¹² per force: 2⁻⁴⁰ is rounding
+  const auto passed = [&](const OperatorRow& row) { return check(find_law("refuses as in exact arithmetic"), row, c).passed(); };
+  EXPECT_EQ(softened<-20>().solve_error, ErrorClass::normwise);
+  EXPECT_TRUE(passed(find_operator("dense_cholesky")));
+  EXPECT_FALSE(passed(softened<-20>()));
+  EXPECT_FALSE(passed(softened<-34>()));
+  EXPECT_TRUE(passed(softened<-40>()));
+}
+
+}  // namespace
+}  // namespace delassus::laws
