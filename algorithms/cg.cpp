@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/columns.h"
-
 namespace delassus {
 namespace {
 
@@ -54,20 +52,13 @@ template <class T, class P> Report CgWith<T, P>::do_apply(ConstRef<T> f, Ref<T> 
   return {};
 }
 
-template <class T, class P> Report CgWith<T, P>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
-  if (!factored_.ok()) return factored_;
-  if (!preconditioned_.ok()) return preconditioned_;
-  Report worst;
-  for (Index c = 0; c < a.cols(); ++c)
-    worst = worse(worst, solve_column(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), workspace));
-  return worst;
-}
-
 template <class T, class P> void CgWith<T, P>::precondition(const T* r, T* z, T* work) const {
   if constexpr (!plain) preconditioner_.solve_kkt(nullptr, r, nullptr, z, work);
 }
 
-template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, T* workspace) const {
+template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  if (!factored_.ok()) return factored_;
+  if (!preconditioned_.ok()) return preconditioned_;
   const Index m = this->size();
   T* const z = plain ? workspace : workspace + 3 * padded(m);  // P r; r itself
   T* const inner_work = workspace + (plain ? 3 : 4) * padded(m);
@@ -83,19 +74,21 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     report.status = Status::not_converged;
     return report;
   }
-  const Index limit = 10 * m + 50;
-  for (int start = 0; start < max_starts; ++start) {
+  const Index limit = std::min<Index>(10 * m + 50, wanted.steps);
+  bool cut_short = false;
+  for (int start = 0; start < max_starts && !cut_short; ++start) {
     precondition(r.data(), z, inner_work);
     p = Map<T>(z, m);
     T rr = inner(r, r), rz = inner(r, Map<T>(z, m));
     const auto small_enough = [&] { return !(rr > eps_squared * (largest * largest * inner(x, x) + bb)); };
-    while (!small_enough() && report.iterations < limit) {
+    while (!small_enough()) {
       multiply(p.data(), q.data(), inner_work);                 // q = A p
       const T pq = inner(p, q);
       if (!ScalarTraits<T>::usable_pivot(pq)) break;            // p in the null space, or not finite
       const T quotient = pq / inner(p, p);
       if (quotient > largest) largest = quotient;
       if (!(quotient > T(unit_roundoff<T>) * largest)) break;    // in the null space, as far as rounding can tell
+      if (cut_short = report.iterations == limit; cut_short) break;
       // α = rᵀz / pᵀAp; with P in float, pᵀr: the energy cannot grow, even when p is little more than rounding
       const T alpha = (plain ? rz : T(inner(p, r))) / pq;
       x += p * alpha;
@@ -117,7 +110,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     report.backward_error = scale > 0 ? residual / scale : residual;
     if (!(report.backward_error > attainable)) break;
   }
-  if (!(report.backward_error <= attainable)) report.status = Status::not_converged;
+  if (!(report.backward_error <= attainable) || (cut_short && limit == wanted.steps)) report.status = Status::not_converged;
   if (!std::isfinite(report.backward_error)) report.status = Status::not_finite;
   return report;
 }

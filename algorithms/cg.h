@@ -6,8 +6,8 @@
 // Singular A may be singular when a lies in its range (redundant rows without damping): the iterate is then a solution
 //          without null-space part. Stagnation is reported as not_converged with the backward error reached.
 // How      stops when the recurrence's residual falls below eps (λmax ‖f‖ + ‖a‖), λmax the largest Rayleigh quotient seen,
-//          or after 10 m + 50 iterations; then the residual is recomputed, and where rounding has left it larger the
-//          iteration starts again from it, up to three times. In exact arithmetic at most m iterations suffice.
+//          or after 10 m + 50 iterations, or as many as wanted; then the residual is recomputed, and where rounding has left
+//          it larger the iteration starts again from it, up to three times. In exact arithmetic at most m iterations suffice.
 // Cost     per iteration one apply of aba_sweep + 10 m operations; about √κ(A) iterations. Preconditioned: also one
 //          solve of lcaba in float; about √(1 + R λmax / g) iterations, one more per group of dependent rows.
 // Workspace  that of aba_sweep + 4 m; preconditioned: + m + that of lcaba in float.
@@ -17,7 +17,7 @@
 
 #include "algorithms/block_diagonal.h"
 #include "algorithms/capped_inverse.h"
-#include "algorithms/delassus.h"
+#include "algorithms/columns.h"
 #include "algorithms/factor.h"
 
 namespace delassus {
@@ -37,7 +37,7 @@ template <class T> class NoPreconditioner {
   Index rows_ = 0;
 };
 
-template <class T, class Preconditioner> class CgWith : public Operator<T> {
+template <class T, class Preconditioner> class CgWith : public ColumnByColumn<T> {
  public:
   static constexpr int max_starts = 3;
   static constexpr bool plain = std::is_same_v<Preconditioner, NoPreconditioner<T>>;
@@ -47,14 +47,13 @@ template <class T, class Preconditioner> class CgWith : public Operator<T> {
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
-  Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
   void multiply(const T* x, T* y, T* workspace) const;
   void precondition(const T* r, T* z, T* work) const;
-  Report solve_column(const T* a, T* f, T* workspace) const;
 
   Plan plan_;
   Factor<T> factor_;

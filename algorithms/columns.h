@@ -27,6 +27,7 @@ template <class T> [[nodiscard]] Index columns_workspace(Index m, Index values, 
   a.error_bound = std::max(a.error_bound, b.error_bound);
   a.error_estimate = std::max(a.error_estimate, b.error_estimate);
   if (!b.rung.empty()) a.rung = b.rung;
+  a.rungs_tried = std::max(a.rungs_tried, b.rungs_tried);
   return a;
 }
 

@@ -43,6 +43,7 @@ template <class T> class Workspace {
 /// What a solve is asked for: a bound on its error, relative, in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹} (= λᵀa).
 struct Accuracy {
   double error = 0;
+  int steps = std::numeric_limits<int>::max();  ///< refinement or Krylov steps at most; not_converged when they do not suffice
   /// All the digits the arithmetic has.
   static constexpr Accuracy full() { return {0}; }
   /// One evaluation: no residual, no certificate.

@@ -36,7 +36,8 @@ template <class T> class Factor {
   /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
   template <class V> void project(const V* x, V* y, V* work) const;
 
-  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of freedom.
+  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of
+  /// freedom; τ = nullptr: zero.
   void solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
   /// τᵀ M_R⁻¹ τ, by the backward sweep alone; every joint active.
   [[nodiscard]] T energy(const T* tau, T* work) const;

@@ -92,9 +92,12 @@ void KktEliminationWith<T, policy>::solve_kkt(const T* r1, const T* r2, T* d_nu,
   const Index m = this->size();
   T* const right = work + refinement_.factor_M().workspace();
   T* const rate = right + padded(m);
-  for (Index r = 0; r < m; ++r) right[r] = T(0);
-  refinement_.factor_M().solve(right, r1, rate, d_nu, work);
-  for (Index r = 0; r < m; ++r) right[r] = r2[r] - rate[r];
+  std::copy(r2, r2 + m, right);
+  if (r1 != nullptr) {
+    std::fill(d_lambda, d_lambda + m, T(0));
+    refinement_.factor_M().solve(d_lambda, r1, rate, d_nu, work);
+    for (Index r = 0; r < m; ++r) right[r] -= rate[r];
+  }
   solve_multipliers(right, d_lambda, rate);
   refinement_.factor_M().solve(d_lambda, r1, rate, d_nu, work);
 }

@@ -101,10 +101,14 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
   Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
   Workspace<T> rest(workspace + padded(m), do_workspace(1) - padded(m));
   Report best{Status::not_supported};
+  int steps = 0, tried = 0;
   for (Rung& rung : rungs_) {
+    if (best.status == Status::not_converged && steps >= wanted.steps) break;
     Report report = prepare(rung);
-    if (report.ok()) report = rung.op->solve(right, answer, wanted, rest);
+    if (report.ok()) report = rung.op->solve(right, answer, {wanted.error, wanted.steps - steps}, rest);
     report.rung = rung.row->name;
+    report.rungs_tried = ++tried;
+    report.iterations = steps += report.iterations;
     const bool has_answer = report.ok() || report.status == Status::not_converged;
     const bool better = best.status != Status::not_converged ||
                         (report.error_bound >= 0 && !(report.error_bound >= best.error_bound));

@@ -6,7 +6,8 @@
 //            proximal          where a row is hard (R⁻¹ = 0); no certificate: judged by the last correction
 //            kkt_elimination   at last, for up to max_dense_rows rows
 // How      update factors the first rung only and keeps the numbers; another rung is factored when a solve first climbs to
-//          it (a lock lets one thread do it, the others wait). Report::rung names who answered.
+//          it (a lock lets one thread do it, the others wait). Report::rung names who answered, rungs_tried
+//          and iterations what it took; Accuracy::steps counts over all rungs.
 // Singular when no rung answers, the report is that of the answer with the smallest bound, not_converged, or of the first
 //          rung that says why there is none.
 // Cost     that of the rungs climbed; memory that of all of them.

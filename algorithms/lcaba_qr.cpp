@@ -20,11 +20,7 @@ template <class T> Report LcabaQr<T>::do_update_damping(const Damping<T>& dampin
 
 template <class T> Report LcabaQr<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   if (!factored_.ok()) return factored_;
-  bool first = true;  // r₁ is zero
-  const auto correct = [&](const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) {
-    factor_.solve_kkt(first ? nullptr : r1, r2, d_nu, d_lambda, work);
-    first = false;
-  };
+  const auto correct = [this](auto... arguments) { factor_.solve_kkt(arguments...); };
   const auto energy = [this](const T* tau, T* work) { return factor_.mass().energy(tau, work); };
   return refinement_.solve_with(a, f, wanted, {max_steps}, correct, energy, workspace);
 }

@@ -83,6 +83,7 @@ template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Workspace<
 template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Accuracy wanted, Workspace<T>& w) const {
   check(a.rows(), a.cols(), f.rows(), f.cols(), a.data(), f.data(), w);
   require(wanted.error >= 0, "Operator::solve: the wanted accuracy is negative or NaN");
+  require(wanted.steps >= 0, "Operator::solve: the number of steps is negative");
   if (a.size() == 0) return {};
   return finished<T>(do_solve_to(a, f, wanted, w.data()), a, f);
 }

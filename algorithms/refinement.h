@@ -55,7 +55,7 @@ template <class T> class Refinement {
     bool patient = false;
   };
   /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
-  /// approximately; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
+  /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
   /// accuracy was not reached, with the iterate it came to; not_finite.
   template <class Correct>
@@ -123,7 +123,7 @@ template <class Correct, class Energy>
 Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
                                  T* work, T* nu) const {
   Buffers b(*structure_, a, work);
-  correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
+  correct(nullptr, b.r2, b.d_nu, b.d_lambda, b.rest);
   Progress now = start(b), before = now;
   Report report;
   while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
@@ -134,7 +134,7 @@ Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps,
     if (done || wanted.error > 0) report.error_bound = certify(b, energy);
     if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
-    if (report.iterations == steps.most || diverges) {
+    if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
       report.error_bound = certify(b, energy);
       report.status = Status::not_converged;
       break;

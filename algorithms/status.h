@@ -39,12 +39,13 @@ enum class Status : std::uint8_t {
 struct Report {
   Status status = Status::ok;
   std::int64_t where = -1;       ///< the row (zero_damping) or degree of freedom (lost_pivot) concerned, −1: none
-  int iterations = 0;            ///< refinement or Krylov steps taken
+  int iterations = 0;            ///< refinement or Krylov steps taken; of the ladder: on all rungs tried
   double backward_error = -1;    ///< normwise relative residual; −1: not computed
   double error_bound = -1;       ///< rigorous bound on the error, relative, in the energy norm; −1: not computed
   double error_estimate = -1;    ///< size of the last correction, relative: the error before it; −1: not computed
   double rcond_estimate = -1;    ///< estimate of 1/κ; −1: not computed
   std::string_view rung = {};    ///< of the ladder: the operator that answered
+  int rungs_tried = 0;           ///< of the ladder: how many operators it asked
 
   [[nodiscard]] bool ok() const { return status == Status::ok; }
 };

@@ -136,7 +136,7 @@ template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, 
   Six<T>* const f = forces(work);
   T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
   scatter(x, f, u);
-  add_torques(tau, u);
+  if (tau != nullptr) add_torques(tau, u);
   backward(f, u);
   forward(f, u);
   gather(f, u, y);

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "algorithms/lcaba_refined.h"
 #include "bench/stopwatch.h"
 #include "bench/text.h"
+#include "reference/kkt_cholmod.h"
 
 namespace delassus::accuracy {
 
 namespace {
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr Errors no_errors{nan, nan, nan, nan};
 constexpr double longest_counted = 0.1;  // [s]: counting takes several times the time of a solve
 
 template <class T> VectorX<Quad> wide(const MatrixX<T>& x) {
@@ -40,10 +44,10 @@ template <class T> class Run {
     for (Index r = 0; r < a.size(); ++r) a_(r, 0) = scalar_cast<T>(a[r]);
     f_ = a_;
   }
-  Report solve() { return op_->solve(a_, f_, *workspace_); }
-  Report both() {
+  Report solve(Accuracy wanted = Accuracy::full()) { return op_->solve(a_, f_, wanted, *workspace_); }
+  Report both(Accuracy wanted = Accuracy::full()) {
     const Report updated = op_->update(problem_, damping_);
-    return updated.ok() ? solve() : updated;
+    return updated.ok() ? solve(wanted) : updated;
   }
   Answer answer() { return {wide(f_), own_motion(*op_, a_, *workspace_)}; }
 
@@ -59,16 +63,6 @@ template <class T> void time(Run<T>& run, double budget, Cell& cell) {
   Report ignored;
   cell.time = bench::stopwatch([&] { ignored = run.both(); }, budget).lowest;
   cell.solve = bench::stopwatch([&] { ignored = run.solve(); }, budget).lowest;
-}
-
-/// Operations of update and solve. A counting scalar carries its residual as itself and may therefore take other steps
-/// than double does: −1 then.
-std::int64_t count(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a, int iterations) {
-  if (!std::get<Maker<Counted>>(row.makers)) return -1;
-  Run<Counted> run(row, problem, damping, a);
-  const std::int64_t before = operation_count.total();
-  const Report report = run.both();
-  return report.ok() && report.iterations == iterations ? operation_count.total() - before : -1;
 }
 
 /// One level of one subject.
@@ -91,12 +85,33 @@ template <class T> Cell measure(const Rung& rung, const Question& q) {
   cell.error_bound = report.error_bound;
   cell.error_estimate = report.error_estimate;
   const bool answered = report.ok() || report.status == Status::not_converged;
-  cell.errors = answered ? q.truth.errors_of(run.answer()) : Errors{std::nan(""), std::nan(""), std::nan(""), std::nan("")};
+  cell.errors = answered ? q.truth.errors_of(run.answer()) : no_errors;
   cell.time = cell.solve = std::nan("");
   if (!answered || q.options.budget == 0) return cell;
   time(run, q.options.budget, cell);
   if (rung.arithmetic == Arithmetic::in_double && 1e-6 * cell.time < longest_counted)
-    cell.operations = count(*rung.row, q.problem, q.damping, q.a, report.iterations);
+    cell.operations = operations(*rung.row, q.problem, q.damping, q.a, Accuracy::full(), report);
+  return cell;
+}
+
+Cell measure_sparse(const Rung& rung, const Question& q) {
+  Cell cell;
+  cell.rung = rung.name;
+  cell.style = rung.style;
+  cell.time = cell.solve = std::nan("");
+  reference::SparseKkt sparse(q.problem, q.damping);
+  const bool factored = sparse.update(q.problem, q.damping);
+  cell.status = std::string(name(factored ? Status::ok : Status::lost_pivot));
+  cell.errors = factored ? q.truth.errors_of({sparse.solve(q.a).cast<Quad>(), {}}) : no_errors;
+  if (!factored || q.options.budget == 0) return cell;
+  const auto solve = [&] { static_cast<void>(sparse.solve(q.a)); };
+  const auto both = [&] {
+    static_cast<void>(sparse.update(q.problem, q.damping));
+    solve();
+  };
+  cell.time = bench::stopwatch(both, q.options.budget).lowest;
+  cell.solve = bench::stopwatch(solve, q.options.budget).lowest;
+  cell.operations = static_cast<std::int64_t>(sparse.operations());
   return cell;
 }
 
@@ -108,12 +123,22 @@ Cell measure(const Rung& rung, const Subject& subject, const Question& q) {
       const Question in_world{subject.world, q.damping, q.a, q.truth, q.options};
       return measure<double>(rung, in_world);
     }
+    case Arithmetic::by_cholmod: return measure_sparse(rung, q);
     case Arithmetic::in_double: break;
   }
   return measure<double>(rung, q);
 }
 
 }  // namespace
+
+std::int64_t operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a,
+                        Accuracy wanted, const Report& in_double) {
+  if (!std::get<Maker<Counted>>(row.makers)) return -1;
+  Run<Counted> run(row, problem, damping, a);
+  const std::int64_t before = operation_count.total();
+  const Report report = run.both(wanted);
+  return report.ok() && report.iterations == in_double.iterations && report.rung == in_double.rung ? operation_count.total() - before : -1;
+}
 
 std::vector<Rung> rungs(const std::vector<std::string>& names) {
   std::vector<Rung> all;
@@ -124,6 +149,7 @@ std::vector<Rung> rungs(const std::vector<std::string>& names) {
   all.push_back({"lcaba, float", lcaba, Arithmetic::in_float, style++});
   all.push_back({"lcaba, quad", lcaba, Arithmetic::in_quad, style++});
   all.push_back({world_rung, lcaba, Arithmetic::about_world_origin, style++});
+  all.push_back({sparse_rung, nullptr, Arithmetic::by_cholmod, style++});
   if (names.empty()) return all;
   std::vector<Rung> chosen;
   for (const std::string& wanted : names) {

@@ -1,7 +1,7 @@
 // What accuracy costs: every rung on one problem, over a range of dampings: errors, certificate, time, operations.
 //
-// A rung is an operator that solves, in double; and lcaba, the paper's formula, also in float, in Quad, and in double on
-// the numbers about the origin of the world. Errors are against truth.h's answer in Quad.
+// A rung is an operator that solves, in double; lcaba, the paper's formula, also in float, in Quad, and in double on the
+// numbers about the origin of the world; and the sparse system in maximal coordinates by CHOLMOD (reference/kkt_cholmod.h). Errors are against truth.h's answer in Quad.
 #pragma once
 
 #include <functional>
@@ -17,19 +17,20 @@ namespace delassus::accuracy {
 inline constexpr const char* fast_rung = "lcaba";              ///< what costs are relative to
 inline constexpr const char* default_rung = "ladder";   ///< what the claims are about
 inline constexpr const char* world_rung = "lcaba, world";
+inline constexpr const char* sparse_rung = "sparse KKT";
 
 inline constexpr double own_damping = -1;                      ///< a damping: the subject's own
 
-enum class Arithmetic : std::uint8_t { in_double, in_float, in_quad, about_world_origin };
+enum class Arithmetic : std::uint8_t { in_double, in_float, in_quad, about_world_origin, by_cholmod };
 
 struct Rung {
   std::string name;
-  const OperatorRow* row;
+  const OperatorRow* row;   ///< nullptr by CHOLMOD
   Arithmetic arithmetic = Arithmetic::in_double;
   int style = 0;   ///< of plots: the same for the same rung in all of them
 };
 
-/// The named operators, or every operator that solves and lcaba's variants when none is named.
+/// The named ones, or every operator that solves, lcaba's variants and CHOLMOD when none is named.
 /// @throws ModelError listing the accepted names.
 [[nodiscard]] std::vector<Rung> rungs(const std::vector<std::string>& names = {});
 
@@ -72,6 +73,11 @@ struct Options {
   double budget = 0.01;           ///< seconds of timing per phase; 0: no times, no operations
   double longest = 0.5;           ///< a rung whose update and solve take longer [s] is left out at further dampings
 };
+
+/// Counted operations of update and one solve; −1: the row cannot count, or it took other steps than in double, since a counting
+/// scalar carries its residual as itself.
+[[nodiscard]] std::int64_t operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping,
+                                      const VectorX<double>& a, Accuracy wanted, const Report& in_double);
 
 /// 1e-14, 1e-12, … up to `largest`.
 [[nodiscard]] std::vector<double> dampings_up_to(double largest);

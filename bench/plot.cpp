@@ -89,8 +89,9 @@ std::string labelled_script(const std::string& x_axis, const std::string& y_axis
   const std::vector<double> at = spread(wanted, 0.055);
   std::ostringstream s;
   s << "set terminal svg size 520,430 dynamic font 'sans-serif,14'\nset encoding utf8\nset logscale xy\n"
-       "set lmargin at screen 0.135\nset rmargin at screen 0.68\nset bmargin at screen 0.155\nset tmargin at screen 0.98\n"
+       "set rmargin at screen 0.68\nset bmargin at screen 0.155\nset tmargin at screen 0.98\n"
        "set grid lw 0.6\nset border 3\nset tics nomirror\nset format '10^{%T}'\nunset key\nset clip two\n"
+    << format("set lmargin at screen %g\n", y.low < 1e-9 ? 0.17 : 0.135)  // 10⁻¹⁶ is wider than 10³
     << format("set xrange [%g:%g]\nset yrange [%g:%g]\n", x.low / 3, x.high * 3, y.low, y.high)
     << format("set xtics %g\nunset mxtics\n", x.high / x.low > 1e8 ? 1e4 : 10.0)
     << "set xlabel '" << x_axis << "'\nset ylabel '" << y_axis << "' offset 0.5,0\n";

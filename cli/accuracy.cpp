@@ -11,6 +11,7 @@
 #include "bench/accuracy_digest.h"
 #include "bench/plot.h"
 #include "bench/text.h"
+#include "cli/accuracy_steps.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "generators/families.h"
@@ -31,7 +32,7 @@ struct Options {
   Index n = 0;
   std::uint64_t seed = 1;
   double seconds = 1200;
-  bool all = false, no_time = false, as_json = false;
+  bool all = false, no_time = false, steps = false, as_json = false;
 };
 
 bool is_family(const std::string& name) {
@@ -152,6 +153,20 @@ int some(const Options& o) {
   return all_hold(made) ? good : law_broken;
 }
 
+int steps(const Options& o) {
+  json out = json::array();
+  for (const std::string& name : o.subjects)
+    for (const double away : o.away)
+      for (const double damping : o.dampings.empty() ? std::vector<double>{own_damping} : o.dampings) {
+        const Convergence c = converge(open_subject(name, o, away), rungs(o.ops), damping, settings(o));
+        if (o.as_json) out.push_back(steps_json(c));
+        else print_steps(c);
+        if (!o.out.empty()) write(std::filesystem::path(o.out) / (name + "_steps.svg"), bench::standalone(picture(c)));
+      }
+  if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
+  return good;
+}
+
 /// The figures of docs/accuracy.md.
 int all(const Options& o) {
   accuracy::Options timed = settings(o);
@@ -183,11 +198,13 @@ int run_accuracy(const Options& o) {
   if (o.all != o.subjects.empty())
     throw ModelError("", "accuracy", o.all ? "--all and a subject are given" : "no subject is given", "scenes and families, or --all");
   for (const double d : o.dampings)
-    if (!(std::isfinite(d) && d > 0)) throw ModelError("", "--damping", format("%g 1/kg", d), "a finite number above 0 [1/kg]");
+    if (!(std::isfinite(d) && (d > 0 || (o.steps && d == 0))))
+      throw ModelError("", "--damping", format("%g 1/kg", d), "a finite number above 0 [1/kg], with --steps also 0");
+  if (o.all && o.steps) throw ModelError("", "accuracy", "--all and --steps are given", "--steps with subjects");
   for (const double away : o.away)
     if (!std::isfinite(away)) throw ModelError("", "--away", format("%g m", away), "a finite number [m]");
   static_cast<void>(rungs({o.claim}));  // throws, listing the names
-  return o.all ? all(o) : some(o);
+  return o.all ? all(o) : o.steps ? steps(o) : some(o);
 }
 
 }  // namespace
@@ -206,6 +223,7 @@ void add_accuracy(CLI::App& app, Run& run) {
   c->add_option("--out", o->out, "directory for the pictures (SVG)");
   c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(CLI::PositiveNumber)->capture_default_str();
   c->add_flag("--all", o->all, "every scene at its place and 1000 km away, every family at its own damping; to 1e14 where timed");
+  c->add_flag("--steps", o->steps, "the error after each step of refinement, proximal and Krylov iterations, at --damping (0: hard rows) or the own one");
   c->add_flag("--no-time", o->no_time, "no times, no counted operations, no pictures");
   c->add_flag("--json", o->as_json, "an array of {subject, dof, rows, away, levels}");
   c->footer("Errors are against an answer in Quad: max|δλ|/max|λ|, ‖δν‖/‖ν‖ in the norm of M, backward. The motion of lcaba_refined "

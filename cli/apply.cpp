@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/accuracy.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -29,6 +30,8 @@ void require_capability(const OperatorRow& row, bool solve) {
 struct Answer {
   VectorX<double> output;
   Report report;
+  std::vector<Index> dependent = {};  ///< hard rows left out
+  double cost = -1;  ///< operations of update and solve, over those of lcaba; −1: not counted
 };
 
 Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>& input, bool solve, Accuracy wanted) {
@@ -41,7 +44,12 @@ Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>
   MatrixX<double> out = MatrixX<double>::Zero(in.rows(), 1);
   Report report = solve ? op->solve(in, out, wanted, workspace) : op->apply(in, out, workspace);
   if (report.ok() && !update.ok() && solve) report = update;
-  return {out.col(0), report};
+  Answer answer{out.col(0), report, op->dependent_rows()};
+  if (!solve || !report.ok()) return answer;
+  const std::int64_t spent = accuracy::operations(row, problem, scene.damping, input, wanted, report);
+  const std::int64_t least = accuracy::operations(find_operator("lcaba"), problem, scene.damping, input, {}, {});
+  if (spent > 0 && least > 0) answer.cost = static_cast<double>(spent) / static_cast<double>(least);
+  return answer;
 }
 
 void print_text(const Options& o, const VectorX<double>& input, const Answer& answer) {
@@ -51,11 +59,17 @@ void print_text(const Options& o, const VectorX<double>& input, const Answer& an
     std::printf("%6lld  %24.17g  %24.17g\n", static_cast<long long>(i), input[i], answer.output[i]);
   const Report& r = answer.report;
   std::printf("status %s", std::string(name(r.status)).c_str());
-  if (!r.rung.empty()) std::printf(", by %s", std::string(r.rung).c_str());
-  if (r.iterations > 0) std::printf(", %d iterations", r.iterations);
+  if (!r.rung.empty()) std::printf(", by %s (rungs tried: %d)", std::string(r.rung).c_str(), r.rungs_tried);
+  if (r.iterations > 0) std::printf(", steps: %d", r.iterations);
   if (r.error_bound >= 0) std::printf(", error at most %.1e (relative, energy norm)", r.error_bound);
   if (r.error_estimate >= 0) std::printf(", last correction %.1e", r.error_estimate);
   std::printf("\n");
+  if (!answer.dependent.empty()) {
+    std::printf("hard rows that depend on the others:");
+    for (const Index row : answer.dependent) std::printf(" %lld", static_cast<long long>(row));
+    std::printf("\n");
+  }
+  if (answer.cost > 0) std::printf("update and solve: %.2f times the operations of lcaba\n", answer.cost);
 }
 
 int apply(const Options& o, bool has_damping) {
@@ -72,7 +86,8 @@ int apply(const Options& o, bool has_damping) {
               {"dof", structure->dofs()}, {"rows", structure->rows}, {"damping", damping_json(scene.damping)},
               {"input", std::vector<double>(input.begin(), input.end())},
               {"output", std::vector<double>(answer.output.begin(), answer.output.end())},
-              {"report", report_json(answer.report)}};
+              {"report", report_json(answer.report)}, {"dependent_rows", answer.dependent}};
+    if (o.solve) j["operations_over_lcaba"] = answer.cost > 0 ? json(answer.cost) : json(nullptr);
     if (!scene.damping.blocks.empty()) j["damping_blocks"] = damping_blocks_json(scene.damping);
     std::printf("%s\n", j.dump().c_str());
   } else {
@@ -98,7 +113,7 @@ void add_apply(CLI::App& app, Run& run) {
       });
   c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
   CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's");
-  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report}");
+  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, with --solve operations_over_lcaba}");
   c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");
   c->callback([=, &run] { run = [=] { return apply(*o, damping->count() > 0); }; });
 }

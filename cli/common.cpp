@@ -46,7 +46,8 @@ json report_json(const Report& r) {
   const auto known = [](double x) { return x < 0 ? json(nullptr) : json(x); };
   return {{"status", name(r.status)}, {"where", r.where < 0 ? json(nullptr) : json(r.where)}, {"iterations", r.iterations},
           {"backward_error", known(r.backward_error)}, {"error_bound", known(r.error_bound)},
-          {"rcond_estimate", known(r.rcond_estimate)}};
+          {"error_estimate", known(r.error_estimate)}, {"rcond_estimate", known(r.rcond_estimate)},
+          {"rung", r.rung.empty() ? json(nullptr) : json(r.rung)}, {"rungs_tried", r.rungs_tried}};
 }
 
 VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning) {

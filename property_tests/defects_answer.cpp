@@ -138,15 +138,35 @@ template <class T> class WrongRefinement final : public Operator<T> {
   std::unique_ptr<Operator<T>> direct_ = find_operator("lcaba").make<T>(), forward_ = find_operator("aba_sweep").make<T>();
 };
 
+/// lcaba_refined that does not hear of an accuracy or a number of steps.
+template <class T> class Headlong final : public Operator<T> {
+ protected:
+  void do_analyze() override { op_->analyze(this->structure()); }
+  Report do_update(const Problem<T>& p, const Damping<T>& d) override { return op_->update(p, d); }
+  Report do_update_damping(const Damping<T>& d) override { return op_->update_damping(d); }
+  Report do_solve(ConstRef<T> a, Ref<T> f, T* work) const override {
+    Workspace<T> w(work, do_workspace(a.cols()));
+    return op_->solve(a, f, w);
+  }
+  [[nodiscard]] Index do_workspace(Index columns) const override { return op_->workspace(columns); }
+  [[nodiscard]] Index do_bytes() const override { return op_->bytes(); }
+
+ private:
+  std::unique_ptr<Operator<T>> op_ = find_operator("lcaba_refined").make<T>();
+};
+
 template <class Op, class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<Op>(); }
 
 std::vector<DefectRow> refinement_defects() {
-  OperatorRow subtracted = find_operator("lcaba_refined"), left_out = subtracted;
+  OperatorRow subtracted = find_operator("lcaba_refined"), left_out = subtracted, headlong = subtracted;
   subtracted.name = "refinement_sign";
   subtracted.makers = {make<WrongRefinement<double>, double>, nullptr, nullptr, nullptr, make<WrongRefinement<Rational>, Rational>, nullptr};
   left_out.name = "refinement_left_out";
   left_out.makers = find_operator("lcaba").makers;
-  return {{subtracted.name, "the correction is subtracted", "lcaba_refined", subtracted, nullptr, true},
+  headlong.name = "steps_ignored";
+  headlong.makers = {make<Headlong<double>, double>, nullptr, nullptr, nullptr, make<Headlong<Rational>, Rational>, nullptr};
+  return {{headlong.name, "as many steps as it likes", "lcaba_refined", headlong},
+          {subtracted.name, "the correction is subtracted", "lcaba_refined", subtracted, nullptr, true},
           {left_out.name, "the direct formula under the error class of the refined one", "lcaba_refined", left_out}};
 }
 

@@ -84,6 +84,7 @@ std::vector<LawRow> first_laws() {
       {"solve after update twice", "second update = fresh operator", "identical bits", can_solve, update_twice<solve>},
       {"apply after update_damping", "update_damping = update", of_apply, can_apply, damping_update<apply>},
       {"solve after update_damping", "update_damping = update", of_solve, can_solve, damping_update<solve>},
+      {"solve in few steps", "as many steps as it takes: the same; one fewer: says so", of_solve, can_solve, few_steps},
       {"no allocation", "allocations after analyze = 0", "zero", why_not_allocation, no_allocation},
       {"apply with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_apply, poisoned_workspace<apply>},
       {"solve with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_solve, poisoned_workspace<solve>},

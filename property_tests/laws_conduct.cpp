@@ -103,6 +103,28 @@ template <Function F> Verdict nan_stays(const OperatorRow& op, const Case& c) {
   return std::isnan(y(row, 0)) ? Verdict{0, "NaN", -1, {}} : failure("a NaN in K gives a number in its row");
 }
 
+Verdict few_steps(const OperatorRow& op, const Case& c) {
+  Route<double> route(op, c.problem, c.damping);
+  const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
+  Workspace<double> w(route.get().workspace(1));
+  const auto solved = [&](int steps) {
+    MatrixX<double> y = MatrixX<double>::Constant(x.rows(), 1, nan);
+    const Report report = route.get().solve(x, y, {0, steps}, w);
+    return std::pair(report, y);
+  };
+  const auto [report, y] = solved(std::numeric_limits<int>::max());
+  const auto [enough, same] = solved(report.iterations);
+  if (enough.status != report.status || enough.iterations != report.iterations)
+    return failure("enough steps: " + std::string(name(enough.status)) + " after " + std::to_string(enough.iterations));
+  const Verdict bits = judge_bits(y, same);
+  if (report.iterations == 0 || !bits.passed()) return bits;
+  const auto [fewer, other] = solved(report.iterations - 1);
+  if (fewer.iterations >= report.iterations) return failure("takes more steps than it may");
+  if (fewer.status == Status::not_converged || !report.ok()) return bits;
+  if (!fewer.ok()) return failure("one step fewer: " + std::string(name(fewer.status)));
+  return worst(bits, close(Function::solve, op, c, x, y, other));
+}
+
 const char* why_not_allocation(const OperatorRow& op, const Case& c) {
   if (!allocation_count) return "this program does not count allocations";
   if (c.rows() == 0) return "no rows";

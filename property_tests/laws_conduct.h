@@ -15,6 +15,9 @@ template <Function F> [[nodiscard]] Verdict damping_update(const OperatorRow& op
 template <Function F> [[nodiscard]] Verdict poisoned_workspace(const OperatorRow& op, const Case& c);
 /// NaN in the vector, or in the row's K: no finite number in the rows it enters, and a status that says so.
 template <Function F> [[nodiscard]] Verdict nan_stays(const OperatorRow& op, const Case& c);
+/// Accuracy::steps as many as a solve takes: the same bits. One fewer: not more than that, and not_converged unless the
+/// answer is within its bound all the same.
+[[nodiscard]] Verdict few_steps(const OperatorRow& op, const Case& c);
 
 [[nodiscard]] const char* why_not_allocation(const OperatorRow& op, const Case& c);
 /// After analyze, none of update, update_damping, apply and solve allocates.

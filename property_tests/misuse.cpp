@@ -107,6 +107,7 @@ std::string wrong_shape(const OperatorRow& row, Operator<double>& op) {
   MatrixX<double> y = x;
   for (const double error : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     if (row.solves && !throws([&] { return op.solve(x, y, Accuracy{error}, w); })) return "wants an error that is no number";
+  if (row.solves && !throws([&] { return op.solve(x, y, Accuracy{0, -1}, w); })) return "wants fewer steps than none";
   if (row.solves && throws([&] { return op.solve(x, y, Accuracy::fastest(), w); })) return "refuses to be fast";
   return {};
 }

@@ -45,7 +45,7 @@ class Model {
   /// The solution of (K).
   void correct(const double* r1, const double* r2, double* d_nu, double* d_lambda, const Asked& asked) const {
     Vector right1(nu_.rows(), 1), right2(lambda_.rows(), 1);
-    for (Index k = 0; k < right1.rows(); ++k) right1(k, 0) = Quad(r1[k]);
+    for (Index k = 0; k < right1.rows(); ++k) right1(k, 0) = Quad(r1 == nullptr ? 0 : r1[k]);
     for (Index k = 0; k < right2.rows(); ++k) right2(k, 0) = Quad(r2[k]);
     const Vector force = reference::dense_solve(exact_, Vector(right2 - product<Quad>(exact_.M_inv_Jt.transpose(), right1)));
     const Vector motion = M_.solve(Vector(right1 + product<Quad>(exact_.J.transpose(), force)));

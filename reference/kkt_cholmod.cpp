@@ -10,13 +10,8 @@
 
 namespace delassus::reference {
 
-namespace {
-
-constexpr int refinement_limit = 60;
-constexpr double largest_fill = 5e7, largest_work = 1e10;
-
 /// CHOLMOD's objects with their lifetime, and the factorisation of one system.
-class Factor {
+class SparseKkt::Factor {
  public:
   Factor(const Kkt<double>& system, std::vector<int> order, bool with_rows)
       : layout_(system.layout), order_(std::move(order)), entries_(system.entries(with_rows)) {
@@ -39,21 +34,20 @@ class Factor {
 
   /// Whether fill and work are within the limits of kkt_cholmod_trusts.
   bool analyse() {
-    const std::size_t n = order_.size();
-    if (n == 0) return true;
-    cholmod_triplet* t = cholmod_allocate_triplet(n, n, entries_.size(), -1, CHOLMOD_REAL, &common_);
-    for (std::size_t k = 0; k < entries_.size(); ++k) {
-      static_cast<int*>(t->i)[k] = static_cast<int>(entries_[k].row);
-      static_cast<int*>(t->j)[k] = static_cast<int>(entries_[k].column);
-      static_cast<double*>(t->x)[k] = entries_[k].value;
-    }
-    t->nnz = entries_.size();
-    matrix_ = cholmod_triplet_to_sparse(t, t->nnz, &common_);
-    cholmod_free_triplet(&t, &common_);
+    if (order_.empty()) return true;
+    fill();
     factor_ = cholmod_analyze_p(matrix_, order_.data(), nullptr, 0, &common_);
     if (!factor_) throw std::runtime_error("kkt_cholmod: CHOLMOD could not analyse the system");
     return common_.lnz <= largest_fill && common_.fl <= largest_work;
   }
+
+  /// Other numbers in the same places.
+  void assign(const Kkt<double>& system) {
+    entries_ = system.entries(true);
+    if (!order_.empty()) fill();
+  }
+
+  [[nodiscard]] double operations() const { return common_.fl + 4 * common_.lnz; }
 
   /// The unknown whose pivot is lost first, or −1.
   Index factorise() {
@@ -88,6 +82,20 @@ class Factor {
   }
 
  private:
+  void fill() {
+    const std::size_t n = order_.size();
+    cholmod_free_sparse(&matrix_, &common_);
+    cholmod_triplet* t = cholmod_allocate_triplet(n, n, entries_.size(), -1, CHOLMOD_REAL, &common_);
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      static_cast<int*>(t->i)[k] = static_cast<int>(entries_[k].row);
+      static_cast<int*>(t->j)[k] = static_cast<int>(entries_[k].column);
+      static_cast<double*>(t->x)[k] = entries_[k].value;
+    }
+    t->nnz = entries_.size();
+    matrix_ = cholmod_triplet_to_sparse(t, t->nnz, &common_);
+    cholmod_free_triplet(&t, &common_);
+  }
+
   // Compares each pivot with its expected sign and with the diagonal of |L||D||Lᵀ|.
   Index lost_pivot() const {
     const int* begin = static_cast<const int*>(factor_->p);
@@ -105,6 +113,7 @@ class Factor {
     return -1;
   }
 
+  static constexpr double largest_fill = 5e7, largest_work = 1e10;
   KktLayout layout_;
   std::vector<int> order_;
   std::vector<KktEntry<double>> entries_;
@@ -112,6 +121,11 @@ class Factor {
   cholmod_sparse* matrix_ = nullptr;
   cholmod_factor* factor_ = nullptr;
 };
+
+namespace {
+
+constexpr int refinement_limit = 60;
+using Factor = SparseKkt::Factor;
 
 Quad largest(const VectorX<Quad>& x) {
   Quad out(0);
@@ -189,6 +203,28 @@ MatrixX<Quad> kkt_cholmod_solve(const Problem<double>& problem, const Damping<do
   }
   return lambda;
 }
+
+SparseKkt::SparseKkt(const Problem<double>& problem, const Damping<double>& damping) {
+  const Kkt<double> system = kkt(problem, damping);
+  layout_ = system.layout;
+  factor_ = std::make_unique<Factor>(system, kkt_order(problem, damping, true), true);
+  (void)factor_->analyse();
+}
+
+SparseKkt::~SparseKkt() = default;
+
+bool SparseKkt::update(const Problem<double>& problem, const Damping<double>& damping) {
+  factor_->assign(kkt(problem, damping));
+  return factor_->factorise() < 0;
+}
+
+VectorX<double> SparseKkt::solve(const VectorX<double>& a) const {
+  VectorX<double> right = VectorX<double>::Zero(layout_.size());
+  right.tail(a.size()) = a;
+  return -factor_->solve(right).tail(a.size());
+}
+
+double SparseKkt::operations() const { return factor_->operations(); }
 
 bool kkt_cholmod_trusts(const Problem<double>& problem, const Damping<double>& damping) {
   Factor factor(kkt(problem, damping), kkt_order(problem, damping, true), true);

@@ -15,8 +15,10 @@
 // 2⁻⁶⁰ of the answer. Cost: fill dependent; O(N) for trees with local constraints.
 #pragma once
 
-#include "algorithms/problem.h"
+#include <memory>
+
 #include "algorithms/scalars.h"
+#include "reference/kkt.h"
 
 namespace delassus::reference {
 
@@ -28,5 +30,25 @@ namespace delassus::reference {
                                               const MatrixX<double>& a);
 /// L has at most 5·10⁷ numbers and takes at most 10¹⁰ operations, and no pivot is lost. Cost: one factorisation.
 [[nodiscard]] bool kkt_cholmod_trusts(const Problem<double>& problem, const Damping<double>& damping);
+
+/// The factorisation by itself: one solve in double, nothing refined. What is measured, not what is trusted.
+class SparseKkt {
+ public:
+  /// Order and fill. @throws std::runtime_error when CHOLMOD cannot.
+  SparseKkt(const Problem<double>& problem, const Damping<double>& damping);
+  ~SparseKkt();
+  /// The numbers, of the same structure and with the same zeros. False: a pivot is lost.
+  [[nodiscard]] bool update(const Problem<double>& problem, const Damping<double>& damping);
+  /// A⁻¹ a after an update that was not refused. Shapes m, m.
+  [[nodiscard]] VectorX<double> solve(const VectorX<double>& a) const;
+  /// Of factorisation and one solve, by CHOLMOD's count.
+  [[nodiscard]] double operations() const;
+
+  class Factor;  ///< CHOLMOD's objects
+
+ private:
+  std::unique_ptr<Factor> factor_;
+  KktLayout layout_;
+};
 
 }  // namespace delassus::reference
