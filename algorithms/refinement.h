@@ -16,6 +16,7 @@
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
 //          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
 //          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. There is none where R⁻¹ has a zero.
+//          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
 //          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
 //          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.
 // Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual in T and half a sweep.
@@ -146,7 +147,7 @@ Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps,
     report.error_estimate = now.size;
   }
   if (!std::isfinite(now.size)) report.status = Status::not_finite;
-  if (report.ok() && wanted.error > 0 && report.error_bound > wanted.error) report.status = Status::not_converged;
+  if (report.ok() && report.error_bound > (wanted.error > 0 ? wanted.error : std::sqrt(unit_roundoff<T>))) report.status = Status::not_converged;
   std::copy(b.f, b.f + b.m, f);
   if (nu != nullptr)
     for (Index c = 0; c < b.n; ++c) nu[c] = narrow<T>(b.nu[c]);

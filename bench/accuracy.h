@@ -27,10 +27,12 @@ struct Rung {
   std::string name;
   const OperatorRow* row;   ///< nullptr by CHOLMOD
   Arithmetic arithmetic = Arithmetic::in_double;
-  int style = 0;   ///< of plots: the same for the same rung in all of them
+  int style = 0;   ///< of plots: the same for the same rung in all of them; −1: not drawn, in the table of costs only
+  Accuracy wanted = Accuracy::full();
 };
 
-/// The named ones, or every operator that solves, lcaba's variants and CHOLMOD when none is named.
+/// The named ones, or every operator that solves, lcaba's variants CHOLMOD and the default asked for fewer digits
+/// when none is named.
 /// @throws ModelError listing the accepted names.
 [[nodiscard]] std::vector<Rung> rungs(const std::vector<std::string>& names = {});
 
@@ -74,8 +76,8 @@ struct Options {
   double longest = 0.5;           ///< a rung whose update and solve take longer [s] is left out at further dampings
 };
 
-/// Counted operations of update and one solve; −1: the row cannot count, or it took other steps than in double, since a counting
-/// scalar carries its residual as itself.
+/// Counted operations of update and one solve with as many steps as in double, which a counting scalar, whose residual is no wider
+/// than itself, might not stop at; −1: the row cannot count, or stopped before.
 [[nodiscard]] std::int64_t operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping,
                                       const VectorX<double>& a, Accuracy wanted, const Report& in_double);
 

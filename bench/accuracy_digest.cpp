@@ -70,12 +70,14 @@ std::vector<Claim> claims(const std::vector<Table>& tables, const std::string& r
 std::vector<Cost> costs(const std::vector<Table>& tables) {
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> times, operations;
+  std::map<std::string, int> points;
   for (const Table& t : tables)
     for (const Level& level : t.levels) {
       const Cell* fast = level.find(fast_rung);
       if (!fast || !claimed(level)) continue;
       for (const Cell& c : level.cells) {
         if (std::find(order.begin(), order.end(), c.rung) == order.end()) order.push_back(c.rung);
+        ++points[c.rung];
         if (c.time > 0 && fast->time > 0) times[c.rung].push_back(c.time / fast->time);
         if (c.operations > 0 && fast->operations > 0)
           operations[c.rung].push_back(static_cast<double>(c.operations) / static_cast<double>(fast->operations));
@@ -83,7 +85,9 @@ std::vector<Cost> costs(const std::vector<Table>& tables) {
     }
   std::vector<Cost> all;
   for (const std::string& rung : order)
-    if (!times[rung].empty()) all.push_back({rung, median(times[rung]), median(operations[rung])});
+    if (!times[rung].empty())
+      all.push_back({rung, median(times[rung]), median(operations[rung]), points[rung], static_cast<int>(times[rung].size()),
+                     static_cast<int>(operations[rung].size())});
   return all;
 }
 
@@ -98,11 +102,11 @@ Grid claims_grid(const std::vector<Claim>& claims) {
 }
 
 Grid costs_grid(const std::vector<Cost>& costs) {
-  Grid grid{{"rung", "time / time of `lcaba`", "operations / operations of `lcaba`", "aim"}};
+  Grid grid{{"rung", "time / time of `lcaba`", "operations / operations of `lcaba`", "timed, counted, of", "aim"}};
   for (const Cost& c : costs) {
     const double aim = c.rung == default_rung ? aimed_default : c.rung == "lcaba_qr" ? aimed_qr : std::nan("");
     const auto met = [&](double x) { return x < aim ? std::string("met") : std::string("missed"); };
-    grid.push_back({c.rung, ratio(c.time), ratio(c.operations),
+    grid.push_back({c.rung, ratio(c.time), ratio(c.operations), format("%d, %d, %d", c.timed, c.counted, c.points),
                     std::isnan(aim) ? "" : format("%g: time %s, operations %s", aim, met(c.time).c_str(), met(c.operations).c_str())});
   }
   return grid;
@@ -114,7 +118,8 @@ Grid digits_grid(const std::vector<Table>& tables) {
     if (t.levels.empty()) continue;
     const Level& level = t.levels.front();
     if (grid.size() == 1)
-      for (const Cell& c : level.cells) grid[0].push_back(c.rung);
+      for (const Cell& c : level.cells)
+        if (c.style >= 0) grid[0].push_back(c.rung);
     grid.push_back({t.name, error_text(level.condition)});
     for (std::size_t k = 2; k < grid[0].size(); ++k) {
       const Cell* c = level.find(grid[0][k]);

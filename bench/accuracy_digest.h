@@ -30,6 +30,7 @@ struct Claim {
 struct Cost {
   std::string rung;
   double time, operations;
+  int points, timed, counted;   ///< scenes × dampings, and where there was a time (an answer) and a count
 };
 [[nodiscard]] std::vector<Cost> costs(const std::vector<Table>& tables);
 

@@ -48,7 +48,7 @@ std::string picture(const Table& table, Price price) {
   for (const Level& level : table.levels) {
     if (!level.no_reference.empty()) continue;
     for (const Cell& c : level.cells)
-      if (const double p = price_of(c, price); p > 0) {
+      if (const double p = price_of(c, price); p > 0 && c.style >= 0) {
         bench::Series& one = series_of(series, c);
         one.ringed = one.ringed || &level == &table.levels.front();
         one.points.emplace_back(drawn(c.errors.motion), p);
@@ -68,6 +68,7 @@ std::string overview(const std::vector<Table>& tables, Price price) {
       const Cell* fast = level.find(fast_rung);
       if (!fast || !level.no_reference.empty()) continue;
       for (const Cell& c : level.cells) {
+        if (c.style < 0) continue;
         static_cast<void>(series_of(series, c));
         Pool& pool = pools[c.rung][group(level.damping)];
         pool.worst = std::max(pool.worst, drawn(c.errors.motion));

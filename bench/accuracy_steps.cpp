@@ -37,7 +37,7 @@ Convergence converge(const Subject& subject, const std::vector<Rung>& rungs, dou
   const Truth truth(subject.problem, d, a);
   Convergence c{subject.name, subject.dofs(), subject.rows(), damping, truth.largest_eigenvalue(), truth.condition(), truth.why_not(), {}};
   for (const Rung& rung : rungs) {
-    if (rung.arithmetic != Arithmetic::in_double || rung.name == default_rung) continue;
+    if (rung.arithmetic != Arithmetic::in_double || rung.row->name == default_rung) continue;
     c.paths.push_back(walk(rung, subject.problem, d, MatrixX<double>(a), truth));
   }
   return c;

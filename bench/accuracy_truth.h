@@ -40,7 +40,8 @@ class Truth {
   [[nodiscard]] double bound() const { return bound_; }
   /// λmax(J M⁻¹Jᵀ) [1/kg], a few per cent low at most (power iteration).
   [[nodiscard]] double largest_eigenvalue() const { return largest_; }
-  /// κ_∞(A), and max|δλ|/max|λ| of the reference against the definition; NaN where that is too large or A singular in Quad.
+  /// κ_∞(A), beyond the size of the definition κ₂(A) by power and inverse iteration (a few per cent low); NaN where A is singular.
+  /// max|δλ|/max|λ| of the reference against the definition; NaN where there is none.
   [[nodiscard]] double condition() const { return condition_; }
   [[nodiscard]] double disagreement() const { return disagreement_; }
 

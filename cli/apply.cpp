@@ -47,7 +47,7 @@ Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>
   Answer answer{out.col(0), report, op->dependent_rows()};
   if (!solve || !report.ok()) return answer;
   const std::int64_t spent = accuracy::operations(row, problem, scene.damping, input, wanted, report);
-  const std::int64_t least = accuracy::operations(find_operator("lcaba"), problem, scene.damping, input, {}, {});
+  const std::int64_t least = accuracy::operations(find_operator("lcaba"), problem, scene.damping, input, Accuracy::full(), {});
   if (spent > 0 && least > 0) answer.cost = static_cast<double>(spent) / static_cast<double>(least);
   return answer;
 }

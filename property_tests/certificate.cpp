@@ -36,8 +36,9 @@ struct Options {
 struct Tally {
   std::uint64_t answers = 0, violated = 0;
   std::uint64_t evaluated = 0;     ///< above the bound by what its evaluation rounds
-  std::uint64_t estimates = 0, below_half = 0, below_tenth = 0;
+  std::uint64_t below_half = 0, below_tenth = 0;
   std::vector<double> pessimism;   ///< bound / error, where the error is above its rounding
+  std::vector<double> estimates;   ///< estimate / error
 };
 
 /// One problem with its truth and a right-hand side.
@@ -64,7 +65,7 @@ void judge_bound(const Options& o, Tally& t, const Question& q, std::string_view
 }
 
 void judge_estimate(Tally& t, double estimate, double before) {
-  ++t.estimates;
+  t.estimates.push_back(estimate / before);
   t.below_half += estimate < before / 2 ? 1 : 0;
   t.below_tenth += estimate < before / 10 ? 1 : 0;
 }
@@ -163,6 +164,12 @@ bool check_problem(const Options& o, std::uint64_t seed, std::map<std::string_vi
   return true;
 }
 
+std::string percent(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", x);
+  return text;
+}
+
 /// Three digits; a dash when there are no values.
 std::string quantile(const std::vector<double>& sorted, double share) {
   if (sorted.empty()) return "–";
@@ -172,21 +179,22 @@ std::string quantile(const std::vector<double>& sorted, double share) {
 }
 
 void print(const Options& o, std::map<std::string_view, Tally>& tallies) {
-  std::puts(o.markdown ? "| answers of | bounds | violated | by its evaluation | error above rounding | bound / error: median | 90 % | 99 % | estimates | below half | below a tenth |\n"
-                         "|---|---|---|---|---|---|---|---|---|---|---|"
-                       : "answers of, bounds, violated, by its evaluation, error above rounding, bound / error: median, 90 %, 99 %, estimates, below half, below a tenth");
+  std::puts(o.markdown ? "| answers of | bounds | violated | by its evaluation | error above rounding | bound / error: median | 90 % | 99 % | estimates | below half | below a tenth | estimate / error: least | 0.1 % | median |\n"
+                         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+                       : "answers of, bounds, violated, by its evaluation, error above rounding, bound / error: median, 90 %, 99 %, estimates, below half, below a tenth, estimate / error: least, 0.1 %, median");
   for (auto& [name, t] : tallies) {
     if (t.answers == 0) continue;
     std::sort(t.pessimism.begin(), t.pessimism.end());
-    const auto share = [total = t.estimates](std::uint64_t k) {
-      return total == 0 ? 0 : 100 * static_cast<double>(k) / static_cast<double>(total);
+    std::sort(t.estimates.begin(), t.estimates.end());
+    const auto share = [total = t.estimates.size()](std::uint64_t k) {
+      return total == 0 ? std::string("–") : percent(100 * static_cast<double>(k) / static_cast<double>(total));
     };
-    std::printf(o.markdown ? "| %s | %llu | %llu | %llu | %zu | %s | %s | %s | %llu | %.2g %% | %.2g %% |\n"
-                           : "%-24s %8llu %4llu %4llu %8zu  %s %s %s  %8llu %.2g %% %.2g %%\n",
+    std::printf(o.markdown ? "| %s | %llu | %llu | %llu | %zu | %s | %s | %s | %zu | %s | %s | %s | %s | %s |\n"
+                           : "%-24s %8llu %4llu %4llu %8zu  %s %s %s  %8zu %s %s  %s %s %s\n",
                 std::string(name).c_str(), static_cast<unsigned long long>(t.answers), static_cast<unsigned long long>(t.violated),
                 static_cast<unsigned long long>(t.evaluated), t.pessimism.size(), quantile(t.pessimism, 0.5).c_str(), quantile(t.pessimism, 0.9).c_str(),
-                quantile(t.pessimism, 0.99).c_str(), static_cast<unsigned long long>(t.estimates), share(t.below_half),
-                share(t.below_tenth));
+                quantile(t.pessimism, 0.99).c_str(), t.estimates.size(), share(t.below_half).c_str(), share(t.below_tenth).c_str(),
+                quantile(t.estimates, 0).c_str(), quantile(t.estimates, 0.001).c_str(), quantile(t.estimates, 0.5).c_str());
   }
 }
 

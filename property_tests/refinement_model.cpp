@@ -86,7 +86,7 @@ class Model {
       e.estimate = size;
       ++e.iterations;
     }
-    if (e.status == Status::ok && asked.wanted > 0 && e.bound > asked.wanted) e.status = Status::not_converged;
+    if (e.status == Status::ok && e.bound > (asked.wanted > 0 ? asked.wanted : std::sqrt(unit_roundoff<double>))) e.status = Status::not_converged;
     return e;
   }
 
