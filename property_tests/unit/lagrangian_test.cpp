@@ -35,32 +35,30 @@ VectorX<Quad> answer(const OperatorRow& row, bool solve, const Problem<T>& probl
   const MatrixX<T> in = converted<T>(x);
   MatrixX<T> out = MatrixX<T>::Constant(x.size(), 1, T(0));
   const Report report = solve ? op->solve(in, out, workspace) : op->apply(in, out, workspace);
-  EXPECT_TRUE(report.ok()) << row.name << " " << name(report.status);
+  // In Quad no wider arithmetic shows an iteration that it is done; what it came to is held to the same bound.
+  const bool undecided = std::is_same_v<T, Quad> && report.status == Status::not_converged;
+  EXPECT_TRUE(report.ok() || undecided) << row.name << " " << name(report.status);
   VectorX<Quad> y(x.size());
   for (Index i = 0; i < x.size(); ++i) y[i] = scalar_cast<Quad>(out(i, 0));
   return y;
 }
 
-struct Rows {
-  const char* op;
-  bool solve;
-};
-constexpr Rows checked[] = {{"aba_sweep", false}, {"dense_cholesky", false}, {"dense_cholesky", true},
-                            {"lcaba", true},      {"lcaba_refined", true}};
-
-/// The worst verdict of the operators on a problem against the reference; `bound(row, solve, y)`: of the errors of y.
+/// The worst verdict on a problem against the reference, of every operator of the table that is served in T;
+/// `bound(row, solve, y)`: of the errors of y.
 template <class T, class Bound>
 Verdict compare(const Numbers& numbers, const Sample& s, const Problem<T>& problem, std::string_view bound_name, Bound bound) {
   const Damping<T> damping = Damping<double>{s.R_inverse, {}}.template cast<T>();
   Verdict worst;
-  for (const Rows& c : checked) {
-    const OperatorRow& row = find_operator(c.op);
-    const VectorX<Quad> exact = c.solve ? numbers.solve(s.R_inverse, s.x) : numbers.apply(s.R_inverse, s.x);
-    const VectorX<Quad> error = answer<T>(row, c.solve, problem, damping, s.x) - exact;
+  for (const bool solve : {false, true}) {
+    const VectorX<Quad> exact = solve ? numbers.solve(s.R_inverse, s.x) : numbers.apply(s.R_inverse, s.x);
     const Vector y = exact.unaryExpr([](const Quad& v) { return static_cast<double>(v); });
-    Verdict v = laws::judge(error, converted<Quad>(bound(row, c.solve, y)), unit_roundoff<T>, bound_name);
-    v.note = std::string(c.op) + (c.solve ? " solve" : " apply");
-    worst = laws::worst(worst, v);
+    for (const OperatorRow& row : operators()) {
+      if (!std::get<Maker<T>>(row.makers) || !(solve ? row.solves : row.applies)) continue;
+      const VectorX<Quad> error = answer<T>(row, solve, problem, damping, s.x) - exact;
+      Verdict v = laws::judge(error, converted<Quad>(bound(row, solve, y)), unit_roundoff<T>, bound_name);
+      v.note = std::string(row.name) + (solve ? " solve" : " apply");
+      worst = laws::worst(worst, v);
+    }
   }
   return worst;
 }
