@@ -3,6 +3,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "property_tests/verdict.h"
+
 namespace delassus {
 namespace {
 
@@ -36,10 +38,10 @@ Damping<double> damped(std::initializer_list<Square> squares) {
   return d;
 }
 
-bool throws(const std::function<Report()>& use) {
+template <class Error = std::logic_error> bool throws(const std::function<Report()>& use) {
   try {
     static_cast<void>(use());
-  } catch (const std::logic_error&) {
+  } catch (const Error&) {
     return true;
   }
   return false;
@@ -69,6 +71,9 @@ std::string wrong_phase(const OperatorRow& row, const Problem<double>& problem) 
   Workspace<double> w(10000);
   const auto use = [&] { return row.applies ? op->apply(x, y, w) : op->solve(x, y, w); };
   if (!throws([&] { op->analyze(nullptr); return Report{}; })) return "analyzes nothing";
+  auto gap = std::make_shared<Structure>(*problem.structure);
+  ++gap->rows;
+  if (!throws<ModelError>([&] { op->analyze(gap); return Report{}; })) return "analyzes a structure with a row of no constraint";
   if (!throws([&] { return op->update(problem, damped({})); })) return "updates before analyze";
   if (!throws([&] { return static_cast<void>(op->workspace()), Report{}; }) || !throws([&] { return static_cast<void>(op->bytes()), Report{}; }))
     return "knows its memory before analyze";
@@ -112,6 +117,38 @@ std::string wrong_shape(const OperatorRow& row, Operator<double>& op) {
   return {};
 }
 
+/// One row, A = 2: one number is answered too, a NaN is not; no column: nothing to say, even of a singular M.
+std::string little_answered(const OperatorRow& row) {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(1, {0});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  p.S[0][0] = p.K[0][0] = p.H[0](0, 0) = 1;
+  const auto op = row.make<double>();
+  op->analyze(p.structure);
+  Workspace<double> w(op->workspace(1));
+  MatrixX<double> x = MatrixX<double>::Constant(1, 1, 3), y(1, 1), none(1, 0), no_answer(1, 0);
+  const std::function<Report(const MatrixX<double>&, MatrixX<double>&)> ways[] = {
+      [&](const auto& in, auto& out) { return op->apply(in, out, w); }, [&](const auto& in, auto& out) { return op->solve(in, out, w); },
+      [&](const auto& in, auto& out) { return op->solve(in, out, Accuracy::full(), w); }, [&](const auto& in, auto& out) { return op->solve(in, out, {0.5}, w); }};
+  for (const auto& way : ways) {
+    if (&way == ways ? !row.applies : !row.solves) continue;
+    static_cast<void>(op->update(p, Damping<double>::uniform(1, 1)));
+    const double expected = &way == ways ? 6 : 1.5;
+    x(0, 0) = 3;
+    y(0, 0) = 0;
+    if (!way(x, y).ok() || !laws::judge(y.cast<Quad>() - MatrixX<Quad>::Constant(1, 1, Quad(expected)), MatrixX<Quad>::Constant(1, 1, Quad(expected)), unit_roundoff<float>, "itself").passed())
+      return "does not answer one number";
+    x(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    if (way(x, y).status != Status::not_finite) return "takes a NaN for a number";
+    Problem<double> singular = p;
+    singular.H[0].setZero();
+    static_cast<void>(op->update(singular, Damping<double>::uniform(1, 1)));
+    if (!way(none, no_answer).ok()) return "refuses nothing";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string misuse_accepted(const OperatorRow& row) {
@@ -122,6 +159,7 @@ std::string misuse_accepted(const OperatorRow& row) {
   if (words.empty()) words = wrong_phase(row, problem);
   static_cast<void>(op->update(problem, damped({})));
   if (words.empty()) words = wrong_shape(row, *op);
+  if (words.empty()) words = little_answered(row);
   return words.empty() ? words : std::string(row.name) + " " + words;
 }
 

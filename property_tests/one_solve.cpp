@@ -4,48 +4,10 @@
 
 #include "algorithms/capped_inverse.h"
 #include "algorithms/kkt_elimination.h"
-#include "algorithms/square_root_factor.h"
-#include "property_tests/route.h"
+#include "property_tests/kkt_system.h"
 
 namespace delassus::laws {
 namespace {
-
-using reference::product;
-
-template <class T> MatrixX<T> transposed(const MatrixX<T>& A) { return A.transpose(); }
-
-template <class T> struct Sides {
-  MatrixX<T> r1, r2;  // or the answer: δν, δλ
-};
-
-/// M, J and R⁻¹ of the definition.
-template <class X> struct System {
-  MatrixX<X> M, J, R_inverse;
-
-  System(const Problem<X>& p, const Damping<X>& d)
-      : M(reference::mass_matrix(p)), J(reference::constraint_jacobian(p)), R_inverse(reference::damping_matrix(*p.structure, d)) {}
-  /// Right-hand side of (K).
-  [[nodiscard]] Sides<X> image(const Sides<X>& x) const {
-    return {product<X>(M, x.r1) - product<X>(transposed(J), x.r2), product<X>(J, x.r1) + product<X>(R_inverse, x.r2)};
-  }
-};
-
-Quad largest(const MatrixX<Quad>& x) { return x.size() == 0 ? Quad(0) : Quad(magnitude(x).maxCoeff()); }
-
-/// |A| · (largest |x|), row by row.
-MatrixX<Quad> terms(const MatrixX<Quad>& A, const MatrixX<Quad>& x) { return MatrixX<Quad>(magnitude(A).rowwise().sum()) * largest(x); }
-
-/// How far x is from solving (K), against the sizes of its terms: those of the row where `by_row`, else of the largest row.
-Verdict residual(const System<Quad>& s, const Sides<Quad>& right, const Sides<Quad>& x, bool by_row, double eps) {
-  const Sides<Quad> got = s.image(x);
-  MatrixX<Quad> one = terms(s.M, x.r1) + terms(transposed(s.J), x.r2) + magnitude(right.r1);
-  MatrixX<Quad> two = terms(s.J, x.r1) + terms(s.R_inverse, x.r2) + magnitude(right.r2);
-  one.setConstant(largest(one));
-  if (!by_row) two.setConstant(largest(two));
-  return worst(judge(got.r1 - right.r1, one, eps, "terms"), judge(got.r2 - right.r2, two, eps, "terms"));
-}
-
-template <class T> Sides<Quad> quad(const Sides<T>& x) { return {converted<Quad>(x.r1), converted<Quad>(x.r2)}; }
 
 /// A vector with numbers behind it that must not be read or written.
 class Fenced {
@@ -186,46 +148,6 @@ Problem<double> nearly_parallel(Index rows) {
   return p;
 }
 
-template <class T> Sides<T> narrow(const Sides<double>& x) { return {converted<T>(x.r1), converted<T>(x.r2)}; }
-
-/// A solve in memory of its own, full of NaN; empty where it writes behind its workspace.
-template <class T> Sides<T> asked(const SquareRootFactor<T>& factor, const Sides<T>& right, bool without_r1 = false) {
-  constexpr Index behind = 16;
-  Sides<T> x{MatrixX<T>::Zero(right.r1.rows(), 1), MatrixX<T>::Zero(right.r2.rows(), 1)};
-  Workspace<T> work(factor.workspace() + behind);
-  work.fill(std::numeric_limits<T>::quiet_NaN());
-  factor.solve_kkt(without_r1 ? nullptr : right.r1.data(), right.r2.data(), x.r1.data(), x.r2.data(), work.data());
-  const T* const end = work.data() + factor.workspace();
-  return std::all_of(end, end + behind, [](T v) { return std::isnan(v); }) ? x : Sides<T>{};
-}
-
-template <class T> bool equal(const Sides<T>& x, const Sides<T>& y) {
-  return x.r1.rows() == y.r1.rows() && x.r2.rows() == y.r2.rows() && (x.r1.array() == y.r1.array()).all() && (x.r2.array() == y.r2.array()).all();
-}
-
-template <class T> std::string root_wrong(const Case& c) {
-  const Problem<T> p = c.problem.template cast<T>();
-  const Damping<T> d = c.damping.template cast<T>();
-  const Structure& s = *p.structure;
-  SquareRootFactor<T> factor;
-  factor.analyze(s);
-  if (!factor.update(p, d).ok()) return "update";
-  const System<Quad> system(p.template cast<double>().template cast<Quad>(), d.template cast<double>().template cast<Quad>());
-  const Sides<T> right = narrow<T>({vectors<double>(s.dofs(), 1, 1), vectors<double>(s.rows, 1, 2)}), got = asked(factor, right);
-  if (got.r2.rows() != c.rows()) return "written behind the workspace";
-  const Verdict v = residual(system, quad(right), quad(got), true, unit_roundoff<T>);
-  if (!v.passed()) return "residual, " + std::to_string(v.ratio);
-  Sides<T> no_r1 = right, shared = right;
-  no_r1.r1.setZero();
-  if (!equal(asked(factor, no_r1, true), asked(factor, no_r1))) return "no r1";
-  Workspace<T> work(factor.workspace());
-  factor.solve_kkt(shared.r1.data(), shared.r2.data(), shared.r1.data(), shared.r2.data(), work.data());
-  if (!equal(shared, got)) return "shared memory";
-  if (!factor.update_weights(other_damping(s, c.damping).template cast<T>()).ok()) return "update_weights";
-  if (factor.update_weights(d).ok() && equal(asked(factor, right), got)) return {};
-  return "other weights in between";
-}
-
 }  // namespace
 
 std::string capped_inverse_wrong(const Case& c) {
@@ -247,12 +169,6 @@ std::string capped_inverse_limits_wrong() {
   const Report lost = Capped<float>(nearly_parallel(1), Damping<double>::uniform(1, 1)).updated();
   if (lost.status != Status::lost_pivot) return "CappedInverse, M singular in float: " + std::string(name(lost.status));
   return Capped<float>(nearly_parallel(0), {}).updated().ok() ? "" : "CappedInverse, no rows";
-}
-
-std::string square_root_wrong(const Case& c) {
-  std::string words = root_wrong<double>(c), of = "double";
-  if (words.empty()) words = root_wrong<float>(c), of = "float";
-  return words.empty() ? "" : "SquareRootFactor in " + of + ", " + words + " on " + c.label;
 }
 
 std::string elimination_wrong(const Case& c) {

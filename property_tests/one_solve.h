@@ -19,6 +19,9 @@ namespace delassus::laws {
 /// memory, other weights in between, and what is written behind the workspace. Needs a regular M and R⁻¹ > 0.
 [[nodiscard]] std::string square_root_wrong(const Case& c);
 
+/// The same where many rows meet, or none; squares that overflow.
+[[nodiscard]] std::string square_root_limits_wrong();
+
 /// KktElimination in rational numbers: the residual of (K) is zero where r₂ is in the range, rows left out carry no force.
 [[nodiscard]] std::string elimination_wrong(const Case& c);
 

@@ -23,6 +23,8 @@ TEST(OneSolve, CappedInverse) {
 
 TEST(OneSolve, SquareRootFactor) {
   for (const Case& c : cases()) EXPECT_EQ(damped(c) ? square_root_wrong(c) : "", "");
+  EXPECT_EQ(square_root_limits_wrong(), "");
+  for (const char* family : {"mixed_damping", "mixed_contacts", "stiff_redundant", "unequal_stack", "quadruped_feet"}) EXPECT_EQ(square_root_wrong(make_case(family, 6, 1)), "");
 }
 
 TEST(OneSolve, KktElimination) {

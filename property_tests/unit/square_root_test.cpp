@@ -1,5 +1,5 @@
-// The square-root elimination where the loop over the laws does not reach: its kernel, lost pivots, general right-hand
-// sides, roots of block damping.
+// The square-root elimination where the loop over the laws does not reach: lost pivots, general right-hand sides, roots of
+// block damping. Its kernel: householder_test.cpp.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -17,99 +17,6 @@ namespace delassus {
 namespace {
 
 using laws::judge;
-
-// A panel of leading columns only, reduced column by column, and what is left of it.
-struct Reduction {
-  Index stride;
-  std::vector<double> columns, beta;
-  std::vector<int> lane, pivot;
-  MatrixX<double> left;  // row k: the row that reflection k completed, from column lane[k] on
-
-  explicit Reduction(const MatrixX<double>& A)
-      : stride((A.rows() + 7) / 8 * 8), columns(static_cast<std::size_t>(stride * A.cols()), 0.0),
-        left(MatrixX<double>::Zero(A.cols(), A.cols())) {
-    const int width = static_cast<int>(A.cols());
-    const Panel<double> panel{columns.data(), stride, width, nullptr, 0, 0};
-    double squared[6];
-    for (int c = 0; c < width; ++c) {
-      lane.push_back(c);
-      for (Index r = 0; r < A.rows(); ++r) panel.column(c)[r] = A(r, c);
-      squared[c] = A.col(c).squaredNorm();
-    }
-    for (int k = 0, last = static_cast<int>(A.rows()) - 1; k < width; ++k, --last) {
-      panel.bring_longest(k, squared, lane.data());
-      const Reflection<double> r = panel.reduce(k, last + 1);
-      beta.push_back(r.beta);
-      pivot.push_back(r.pivot);
-      left(k, lane[k]) = r.left;
-      for (int c = k + 1; c < width; ++c) left(k, lane[c]) = panel.take(c, last, squared[c]);
-    }
-  }
-  /// Q times the rows left, column c.
-  [[nodiscard]] VectorX<double> restored(Index rows, int c) const {
-    VectorX<double> x = VectorX<double>::Zero(stride);
-    for (std::size_t k = 0; k < beta.size(); ++k) x[rows - 1 - static_cast<Index>(k)] = left(static_cast<Index>(k), c);
-    for (std::size_t k = beta.size(); k-- > 0;) {
-      const int last = static_cast<int>(rows) - 1 - static_cast<int>(k);
-      std::swap(x[pivot[k]], x[last]);
-      reflect(x.data(), columns.data() + static_cast<Index>(k) * stride, beta[k], last + 1);
-    }
-    return x.head(rows);
-  }
-};
-
-TEST(Householder, PivotsAreExactWhereNormsAre) {
-  MatrixX<double> A(4, 2);
-  A << 0, 2, 0, 2, 4, 0, 0, 1;
-  const Reduction r(A);
-  EXPECT_EQ(r.lane, (std::vector<int>{0, 1}));   // the longer column first
-  EXPECT_EQ(r.pivot, (std::vector<int>{2, 0}));  // its largest entry
-  EXPECT_EQ(r.left(0, 0), -4);
-  EXPECT_EQ(r.left(0, 1), 0);
-  EXPECT_EQ(r.left(1, 1), -3);
-  EXPECT_EQ(r.left(1, 0), 0);
-}
-
-// What is left of an estimated norm must not decide the order: columns that differ in the last rows only.
-TEST(Householder, KnowsTheLongerColumnAfterCancellation) {
-  MatrixX<double> A(4, 3);
-  A << 0x1p30, 0x1p30, 0x1p30, 0, 0x1p-10, 0x1p-9, 0, 0, 0, 0, 0, 0;
-  const Reduction r(A);
-  EXPECT_EQ(r.lane, (std::vector<int>{0, 2, 1}));
-}
-
-TEST(Householder, KeepsAColumnOfZerosAsItIs) {
-  MatrixX<double> A = MatrixX<double>::Zero(9, 3);
-  A.col(1).setConstant(2);
-  const Reduction r(A);
-  EXPECT_EQ(r.left(0, 1), -6);
-  for (const int k : {1, 2}) EXPECT_EQ(r.beta[k], 0);
-  for (const int c : {0, 2}) EXPECT_EQ(r.restored(9, c), A.col(c));
-}
-
-TEST(Householder, ANotANumberReachesEveryColumnBehind) {
-  MatrixX<double> A = MatrixX<double>::Ones(3, 2);
-  A(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(Reduction(A).left(0, 1)));
-}
-
-// A = Q (0; R), each row to an accuracy of its own size, whatever the sizes of the others.
-TEST(Householder, EveryRowKeepsItsOwnAccuracy) {
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> number(-1, 1);
-  for (int draw = 0; draw < 50; ++draw) {
-    MatrixX<double> A(11, 4);
-    for (Index r = 0; r < 11; ++r)
-      for (Index c = 0; c < 4; ++c) A(r, c) = number(engine) * (r % 3 == 2 ? 0x1p40 : r % 3 == 1 ? 0x1p10 : 1);
-    const Reduction reduction(A);
-    ASSERT_EQ(reduction.beta.size(), 4u);
-    MatrixX<Quad> error(11, 4), bound(11, 4);
-    for (int c = 0; c < 4; ++c) error.col(c) = reduction.restored(11, c).cast<Quad>() - A.col(c).cast<Quad>();
-    for (Index r = 0; r < 11; ++r) bound.row(r).setConstant(Quad(A.row(r).cwiseAbs().maxCoeff()) * Quad(4));
-    const auto verdict = judge(error, bound, unit_roundoff<double>, "4 · largest entry of the row");
-    EXPECT_TRUE(verdict.passed()) << verdict.ratio << " in row " << verdict.row;
-  }
-}
 
 MatrixX<double> random_columns(Index rows, unsigned seed) {
   std::mt19937 engine(seed);

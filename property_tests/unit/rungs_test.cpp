@@ -1,0 +1,107 @@
+// Which rung's answer and report the ladder gives.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "algorithms/ladder.h"
+#include "generators/build.h"
+#include "generators/families.h"
+#include "property_tests/verdict.h"
+
+namespace delassus {
+namespace {
+
+struct Said {
+  Report updated, report;
+  MatrixX<double> f;
+};
+
+Said asked(std::string_view name, const Problem<double>& p, const Damping<double>& d, const MatrixX<double>& a, Accuracy wanted) {
+  const auto op = find_operator(name).make<double>();
+  op->analyze(p.structure);
+  Said said{op->update(p, d), {}, MatrixX<double>::Constant(a.rows(), 1, 0.75)};
+  Workspace<double> w(op->workspace());
+  said.report = op->solve(a, said.f, wanted, w);
+  return said;
+}
+
+/// A body of two freedoms, as far apart as `angle` says, with rows of two entries.
+Problem<double> sliding(double angle, const std::vector<std::array<double, 2>>& K) {
+  Structure s;
+  s.add_body(ground, 2);
+  for (std::size_t r = 0; r < K.size(); r += 7) s.add_link_constraint(static_cast<Index>(std::min<std::size_t>(7, K.size() - r)), {0});
+  Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  p.H[0].diagonal().setOnes();
+  p.S[0][0] = p.S[1][0] = 1;
+  p.S[1][1] = angle;
+  for (std::size_t r = 0; r < K.size(); ++r) p.K[r].head<2>() << K[r][0], K[r][1];
+  return p;
+}
+
+TEST(Rungs, AnIterateIsKeptWhereALaterRungHasNone) {
+  const Problem<double> p = sliding(1, {{1, 0}, {1, 0}});
+  const auto hard = Damping<double>::uniform(2, 0);
+  MatrixX<double> a(2, 1);
+  a << 1, 2;  // no force does that
+  const Said ladder = asked("ladder", p, hard, a, Accuracy::full()), proximal = asked("proximal", p, hard, a, Accuracy::full());
+  EXPECT_EQ(asked("kkt_elimination", p, hard, a, Accuracy::full()).report.status, Status::inconsistent);
+  EXPECT_EQ(proximal.report.status, Status::not_converged);
+  EXPECT_EQ(ladder.report.status, Status::not_converged);
+  EXPECT_EQ(ladder.report.rung, "proximal");
+  EXPECT_TRUE(laws::judge_bits(ladder.f, proximal.f).passed());
+}
+
+TEST(Rungs, OfAnswersThatAreNotGoodEnoughTheFirstWithTheSmallestBoundIsKept) {
+  std::set<std::string_view> kept;
+  for (const char* family : {"redundant", "humanoid", "mixed_damping"})
+    for (const double damping : {1.0, 1e-4, 1e-10, 1e-14}) {
+      const auto built = generators::build(generators::find_family(family).make(6, 1));
+      const auto d = Damping<double>::uniform(built.problem.structure->rows, damping);
+      const MatrixX<double> a = MatrixX<double>::Ones(built.problem.structure->rows, 1);
+      Said best;
+      std::string_view rung;
+      for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
+        const Said said = asked(name, built.problem, d, a, {1e-20});
+        if (said.report.status != Status::not_converged || (!rung.empty() && !(said.report.error_bound < best.report.error_bound))) continue;
+        best = said;
+        rung = name;
+      }
+      const Said ladder = asked("ladder", built.problem, d, a, {1e-20});
+      EXPECT_EQ(ladder.report.status, Status::not_converged);
+      EXPECT_EQ(ladder.report.rung, rung) << family << ' ' << damping;
+      EXPECT_EQ(ladder.report.error_bound, best.report.error_bound) << family << ' ' << damping;
+      EXPECT_TRUE(laws::judge_bits(ladder.f, best.f).passed()) << family << ' ' << damping;
+      kept.insert(rung);
+    }
+  EXPECT_GE(kept.size(), 2U);
+}
+
+TEST(Rungs, TheDenseOneTakesSoManyRows) {
+  const auto bytes = [](Index rows) {
+    const auto op = find_operator("ladder").make<double>();
+    op->analyze(sliding(1, std::vector<std::array<double, 2>>(static_cast<std::size_t>(rows), {1, 0})).structure);
+    return op->bytes();
+  };
+  EXPECT_GT(bytes(Ladder<double>::max_dense_rows), 2 * bytes(Ladder<double>::max_dense_rows + 1));
+}
+
+TEST(Rungs, AnUpdateIsWhatTheFirstUsableRungSays) {
+  const Problem<double> p = sliding(0x1p-25, {{1, 0}});  // a pivot of 2⁻⁵⁰: positive, and below 30 eps
+  const auto soft = Damping<double>::uniform(1, 1);
+  const MatrixX<double> a = MatrixX<double>::Ones(1, 1);
+  EXPECT_EQ(asked("lcaba_qr", p, soft, a, Accuracy::full()).updated.status, Status::lost_pivot);
+  EXPECT_TRUE(asked("ladder", p, soft, a, Accuracy::full()).updated.ok());
+}
+
+TEST(Rungs, AnUpdateNamesTheRowThatNoRungCanDoWithout) {
+  const Index m = Ladder<double>::max_dense_rows + 1;  // the dense one could
+  std::vector<std::array<double, 2>> K(static_cast<std::size_t>(m), {1, 0});
+  K[5] = {0, 0};
+  const Report updated = asked("ladder", sliding(1, K), Damping<double>::uniform(m, 0), MatrixX<double>::Ones(m, 1), Accuracy::full()).updated;
+  EXPECT_EQ(updated.status, Status::zero_damping);
+  EXPECT_EQ(updated.where, 5);
+}
+
+}  // namespace
+}  // namespace delassus
