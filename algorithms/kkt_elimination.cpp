@@ -24,7 +24,8 @@ template <class T, Dependent policy> void KktEliminationWith<T, policy>::do_anal
 
 template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  undamped_ = refinement_.update(problem);
+  refinement_.update(problem);
+  undamped_ = refinement_.factor_mass();
   if (undamped_.ok())
     for (Index c = 0; c < A0_.cols(); ++c) {  // J M⁻¹Jᵀ e_c
       unit_[c] = T(1);

@@ -8,7 +8,7 @@ template <class T> void LcabaQr<T>::do_analyze() {
 }
 
 template <class T> Report LcabaQr<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  if (const Report numbers = refinement_.update(problem); !numbers.ok()) return numbers;
+  refinement_.update(problem);
   refinement_.update_damping(damping);
   return factored_ = factor_.update(problem, damping);
 }

@@ -10,13 +10,13 @@ template <class T> void LcabaRefined<T>::do_analyze() {
 
 template <class T> Report LcabaRefined<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   undamped_ = factor_.start(problem);
-  factored_M_ = refinement_.update(problem);
+  refinement_.update(problem);
   return do_update_damping(damping);
 }
 
 template <class T> Report LcabaRefined<T>::do_update_damping(const Damping<T>& damping) {
   refinement_.update_damping(damping);
-  factored_ = undamped_.ok() ? factored_M_ : undamped_;
+  factored_ = undamped_;
   if (factored_.ok()) factored_ = refinement_.invertible();
   if (factored_.ok()) factored_ = factor_.update_weights(refinement_.weights());
   return factored_;

@@ -4,7 +4,7 @@
 // Formula  (K) of refinement.h by the inversion lemma:  M_R δν = r₁ + JᵀR r₂,  δλ = R (r₂ − J δν).
 // Singular as lcaba. Refinement that has not reached its target after max_steps is reported as not_converged.
 // How      the factor of lcaba; the loop and the certificate of refinement.h.
-// Cost     update: lcaba + the factor of M; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
+// Cost     update: lcaba, and the factor of M at the first solve that asks for a certificate; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
 // Workspace  that of lcaba + refinement's.
 // Error    refined: within the data's own sensitivity, or eps of the largest force and eps in the energy norm.
 // Source   paper, Algorithm 4; refinement.h.
@@ -36,7 +36,7 @@ template <class T> class LcabaRefined : public ColumnByColumn<T> {
   Plan plan_;
   Factor<T> factor_;
   Refinement<T> refinement_;
-  Report undamped_, factored_M_, factored_;
+  Report undamped_, factored_;
 };
 
 }  // namespace delassus

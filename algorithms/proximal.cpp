@@ -8,7 +8,8 @@ template <class T, class F> void ProximalWith<T, F>::do_analyze() {
 }
 
 template <class T, class F> Report ProximalWith<T, F>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  undamped_ = refinement_.update(problem);
+  refinement_.update(problem);
+  undamped_ = refinement_.factor_mass();
   if (undamped_.ok()) undamped_ = inverse_.update(problem, refinement_.factor_M());
   return do_update_damping(damping);
 }

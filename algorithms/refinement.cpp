@@ -15,11 +15,20 @@ template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> 
   factor_M_.analyze(*structure_, plan_M_);
 }
 
-template <class T> Report Refinement<T>::update(const Problem<T>& problem) {
+template <class T> void Refinement<T>::update(const Problem<T>& problem) {
   residual_.update(problem);
-  if (mass_ == Mass::factored_elsewhere) return {};
-  const Report started = factor_M_.start(problem);
-  return started.ok() ? factor_M_.update_undamped() : started;
+  if (mass_ == Mass::factored_elsewhere) return;
+  factored_M_ = factor_M_.start(problem);
+  M_is_current_ = false;
+}
+
+template <class T> Report Refinement<T>::factor_mass() const {
+  if (M_is_current_.load(std::memory_order_acquire)) return factored_M_;
+  const std::lock_guard lock(factoring_M_);
+  if (M_is_current_) return factored_M_;
+  if (factored_M_.ok()) factored_M_ = factor_M_.update_undamped();
+  M_is_current_.store(true, std::memory_order_release);
+  return factored_M_;
 }
 
 template <class T> void Refinement<T>::update_damping(const Damping<T>& damping) {

@@ -24,7 +24,9 @@
 // Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 #pragma once
 
+#include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "algorithms/columns.h"
 #include "algorithms/factor.h"
@@ -41,14 +43,16 @@ template <class T> class Refinement {
   enum class Mass : std::uint8_t { factored_here, factored_elsewhere };
 
   void analyze(std::shared_ptr<const Structure> structure, Mass mass = Mass::factored_here);
-  /// Report: lost_pivot of M, where it is factored here.
-  [[nodiscard]] Report update(const Problem<T>& problem);
+  void update(const Problem<T>& problem);
   void update_damping(const Damping<T>& damping);
 
   /// R, or in what row it does not exist.
   [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
   [[nodiscard]] const Report& invertible() const { return invertible_; }
-  /// The factor of M, every joint active, where it is factored here.
+  /// Factors M where that is done here, once after an update: at the first call, which solve makes when a certificate is asked
+  /// for. Threads wait for the one that does it. Report: lost_pivot.
+  [[nodiscard]] Report factor_mass() const;
+  /// The factor of M, every joint active, after factor_mass.
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
   struct Steps {
@@ -58,9 +62,11 @@ template <class T> class Refinement {
   /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
-  /// accuracy was not reached, with the iterate it came to; not_finite.
+  /// accuracy was not reached, with the iterate it came to; not_finite; lost_pivot of M.
   template <class Correct>
   Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr) const {
+    if (std::isfinite(wanted.error))
+      if (const Report factored = factor_mass(); !factored.ok()) return factored;
     const auto energy = [this](const T* tau, T* rest) { return factor_M_.energy(tau, rest); };
     return solve_with(a, f, wanted, steps, correct, energy, work, nu);
   }
@@ -91,7 +97,10 @@ template <class T> class Refinement {
   KktResidual<T> residual_;
   Mass mass_ = Mass::factored_here;
   Plan plan_M_;
-  Factor<T> factor_M_;
+  mutable Factor<T> factor_M_;
+  mutable Report factored_M_;
+  mutable std::atomic<bool> M_is_current_ = true;
+  mutable std::mutex factoring_M_;
   BlockDiagonal<T> weights_;
   Report invertible_;
 };

@@ -114,7 +114,8 @@ template <class F> void check_refinement(const Options& o, const Question& q, do
   Refinement<double> refinement;
   refinement.analyze(q.problem.structure);
   Correction<F> correct(q, g, noise);
-  if (!refinement.update(q.problem).ok() || !correct.update(q, refinement.factor_M())) return;
+  refinement.update(q.problem);
+  if (!refinement.factor_mass().ok() || !correct.update(q, refinement.factor_M())) return;
   refinement.update_damping(q.damping);
   Workspace<double> work(refinement.workspace(correct.workspace()));
   VectorX<double> nu(exact.J.cols()), f(exact.J.rows());

@@ -170,7 +170,8 @@ std::string calls_wrong(const Case& c, const std::vector<Asked>& calls) {
   const Model model(c);
   Refinement<double> refinement;
   refinement.analyze(c.problem.structure);
-  if (!refinement.update(c.problem).ok()) return "update on " + c.label;
+  refinement.update(c.problem);
+  if (!refinement.factor_mass().ok()) return "update on " + c.label;
   refinement.update_damping(c.damping);
   Workspace<double> work(refinement.workspace(0));
   work.fill(std::numeric_limits<double>::quiet_NaN());
@@ -209,7 +210,7 @@ std::string stray_motion_wrong() {
   p.S[0][0] = p.K[0][0] = 1;
   Refinement<double> refinement;
   refinement.analyze(p.structure);
-  if (!refinement.update(p).ok()) return "update";
+  refinement.update(p);
   refinement.update_damping(Damping<double>::uniform(1, 1));
   Workspace<double> work(refinement.workspace(0));
   for (const bool patient : {false, true}) {

@@ -59,6 +59,31 @@ TEST(Ladder, PaysOnlyForWhatIsAsked) {
   EXPECT_LE(full.error_bound, loose.error_bound);
 }
 
+/// Operations of update and one solve.
+std::int64_t operations(std::string_view op_name, Accuracy wanted) {
+  const generators::Built built = generators::build(generators::find_family("humanoid").make(12, 1));
+  const Index m = built.problem.structure->rows;
+  const Problem<Counted> problem = built.problem.cast<Counted>();
+  const Damping<Counted> damping = Damping<double>::uniform(m, 1e-4).cast<Counted>();
+  const auto op = find_operator(op_name).make<Counted>();
+  op->analyze(problem.structure);
+  Workspace<Counted> w(op->workspace());
+  const MatrixX<Counted> a = MatrixX<Counted>::Constant(m, 1, Counted(1));
+  MatrixX<Counted> f = a;
+  const std::int64_t before = operation_count.total();
+  EXPECT_TRUE(op->update(problem, damping).ok());
+  EXPECT_TRUE(op->solve(a, f, wanted, w).ok());
+  return operation_count.total() - before;
+}
+
+TEST(Ladder, WhatIsNotAskedIsNotComputed) {
+  const auto lcaba = operations("lcaba", Accuracy::full()), fastest = operations("ladder", Accuracy::fastest());
+  const auto loose = operations("ladder", {1e-3}), full = operations("ladder", Accuracy::full());
+  EXPECT_LT(10 * fastest, 11 * lcaba) << "no factor of M, no residual";
+  EXPECT_LT(fastest, loose);
+  EXPECT_LT(loose, full);
+}
+
 TEST(Ladder, ACertifiedAnswerReachesEveryTargetItClaims) {
   for (const double damping : {1e-2, 1e-6, 1e-10, 1e-14})
     for (const double target : {1e-2, 1e-6, 1e-10}) {
