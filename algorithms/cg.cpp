@@ -74,7 +74,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     report.status = Status::not_converged;
     return report;
   }
-  const Index limit = std::min<Index>(10 * m + 50, wanted.steps);
+  const Index most = 10 * m + 50, limit = std::min<Index>(most, wanted.steps);
   bool cut_short = false;
   for (int start = 0; start < max_starts && !cut_short; ++start) {
     precondition(r.data(), z, inner_work);
@@ -110,7 +110,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     report.backward_error = scale > 0 ? residual / scale : residual;
     if (!(report.backward_error > attainable)) break;
   }
-  if (!(report.backward_error <= attainable) || (cut_short && limit == wanted.steps)) report.status = Status::not_converged;
+  if (!(report.backward_error <= attainable) || (cut_short && limit < most)) report.status = Status::not_converged;
   if (!std::isfinite(report.backward_error)) report.status = Status::not_finite;
   return report;
 }

@@ -26,6 +26,18 @@ template <class T> void KktResidual<T>::update(const Problem<T>& problem) {
   std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k_.begin());
 }
 
+template <class T> void KktResidual<T>::numbers(Problem<T>& to) const {
+  const auto six = [](const Six<T>& from, T* x) {
+    for (int r = 0; r < 6; ++r) x[r] = from[r];
+  };
+  for (std::size_t c = 0; c < s_.size(); ++c) six(s_[c], to.S[c].data());
+  for (std::size_t r = 0; r < k_.size(); ++r) six(k_[r], to.K[r].data());
+  for (std::size_t i = 0; i < h_.size(); ++i)
+    for (int c = 0; c < 6; ++c) six(h_[i].column[c], to.H[i].data() + 6 * c);
+  std::copy(armature_.begin(), armature_.end(), to.armature.begin());
+  std::copy(joint_k_.begin(), joint_k_.end(), to.joint_K.begin());
+}
+
 // In `work`, from where V is aligned.
 template <class T> template <class V> struct KktResidual<T>::Buffers {
   Six<V> *acceleration, *force;  // a_i, F_i per body

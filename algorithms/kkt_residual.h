@@ -19,6 +19,8 @@ template <class T> class KktResidual {
  public:
   void analyze(std::shared_ptr<const Structure> structure);
   void update(const Problem<T>& problem);
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const;
   void update_damping(const Damping<T>& damping) { damping_.assign(damping); }
 
   /// r1 (n, in the problem's order of degrees of freedom) and r2 (m), from r1_0 (nullptr: 0) and r2_0, which they may

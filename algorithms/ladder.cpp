@@ -1,6 +1,7 @@
 #include "algorithms/ladder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace delassus {
 
@@ -27,6 +28,7 @@ template <class T> void Ladder<T>::do_analyze() {
     rungs_.push_back({.row = &row, .op = row.make<T>()});
     rungs_.back().op->analyze(this->structure());
   }
+  first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
   problem_ = Problem<T>(this->structure());
   plain_.diagonal.assign(static_cast<std::size_t>(s.rows), T(0));
   blocks_ = plain_;
@@ -63,9 +65,11 @@ template <class T> bool Ladder<T>::in_wide(Index row) const {
 }
 
 template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  problem_ = problem;
   keep(damping);
   for (Rung& rung : rungs_) rung.state = State::stale;
+  problem_is_current_ = false;
+  rungs_.front().updated = rungs_.front().op->update(problem, *damping_);
+  rungs_.front().state = State::current;
   return first_usable();
 }
 
@@ -89,7 +93,10 @@ template <class T> Report Ladder<T>::first_usable() {
 
 template <class T> Report Ladder<T>::prepare(Rung& rung) const {
   const std::lock_guard lock(preparing_);
-  if (rung.state == State::stale) rung.updated = rung.op->update(problem_, *damping_);
+  if (rung.state == State::stale) {
+    if (!std::exchange(problem_is_current_, true)) first_->numbers(problem_);
+    rung.updated = rung.op->update(problem_, *damping_);
+  }
   if (rung.state == State::stale_damping) rung.updated = rung.op->update_damping(*damping_);
   rung.state = State::current;
   return rung.updated;

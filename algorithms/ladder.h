@@ -5,7 +5,7 @@
 //            lcaba_qr          where that stagnates or loses a pivot
 //            proximal          where a row is hard (R⁻¹ = 0); no certificate: judged by the last correction
 //            kkt_elimination   at last, for up to max_dense_rows rows
-// How      update factors the first rung only and keeps the numbers; another rung is factored when a solve first climbs to
+// How      update factors the first rung only, which keeps the numbers; another rung is factored when a solve first climbs to
 //          it (a lock lets one thread do it, the others wait). Report::rung names who answered, rungs_tried
 //          and iterations what it took; Accuracy::steps counts over all rungs.
 // Singular when no rung answers, the report is that of the answer with the smallest bound, not_converged, or of the first
@@ -16,7 +16,7 @@
 
 #include <mutex>
 
-#include "algorithms/columns.h"
+#include "algorithms/lcaba_refined.h"
 
 namespace delassus {
 
@@ -47,8 +47,10 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   Report prepare(Rung& rung) const;
 
   mutable std::vector<Rung> rungs_;
+  const LcabaRefined<T>* first_ = nullptr;
   mutable std::mutex preparing_;
-  Problem<T> problem_;
+  mutable Problem<T> problem_;         // what the first rung was given; current when another was factored since
+  mutable bool problem_is_current_ = false;
   Damping<T> plain_, blocks_;          // what was given: without blocks, or with one block per constraint of several rows
   const Damping<T>* damping_ = nullptr;
 };

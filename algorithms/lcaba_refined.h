@@ -21,6 +21,8 @@ template <class T> class LcabaRefined : public ColumnByColumn<T> {
 
   /// One column, as solve; nu, when given, receives ν = M⁻¹Jᵀf (n), which keeps its digits where J^T f cancels.
   Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const;
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const { refinement_.numbers(to); }
 
  protected:
   void do_analyze() override;

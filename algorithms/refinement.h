@@ -46,6 +46,8 @@ template <class T> class Refinement {
   void update(const Problem<T>& problem);
   void update_damping(const Damping<T>& damping);
 
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const { residual_.numbers(to); }
   /// R, or in what row it does not exist.
   [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
   [[nodiscard]] const Report& invertible() const { return invertible_; }
