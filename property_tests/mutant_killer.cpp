@@ -2,7 +2,7 @@
 // refusals of misuse, that what an operator was used for before leaves no trace, that a lost pivot is named in every phase
 // until there are better numbers; and, when named like operators: every number of a plan (`plans`), the functions of Factor
 // and KktResidual (`kernels`), those of Refinement (`refinement`), cg on known spectra (`krylov`), dependent hard rows (`dependent`),
-// what solves (K) once (`capped`, `elimination`, `square_root`), suites of unit tests (`Householder`, `Ladder`, …).
+// what solves (K) once (`capped`, `elimination`, `square_root`), suites of unit tests (`Householder`, `Rungs`, …).
 //
 //   mutant_killer [--mutants N] OPERATOR …
 //

@@ -70,22 +70,29 @@ Case many_rows(Index heavy) {
   return make_case(std::move(p), std::move(d), "many rows, " + std::to_string(heavy) + " of them heavy", 1);
 }
 
-/// Three rows on two freedoms, the first one heavy, and all but along the second freedom.
-Case tilted_row() {
+/// A row of these numbers and its R⁻¹.
+struct Row {
+  double K[3], R_inverse;
+};
+
+/// Rows on three freedoms of a body, heavy ones that are all but along one of them: each wrong order of columns drowns the light.
+Case tilted_rows(std::vector<Row> rows) {
   Structure s;
-  s.add_body(ground, 2);
-  s.add_link_constraint(3, {0});
+  s.add_body(ground, 3);
+  s.add_link_constraint(static_cast<Index>(rows.size()), {0});
   Problem<double> p(std::make_shared<const Structure>(std::move(s)));
+  Damping<double> d = Damping<double>::uniform(static_cast<Index>(rows.size()), 1);
   p.H[0].diagonal().setOnes();
-  p.S[0][0] = p.S[1][1] = 1;
-  p.K[0].head<2>() << 0x1p-40, 1;
-  p.K[1].head<2>() << 0.75, 0.625;
-  p.K[2].head<2>() << 0.875, -0.5;
-  return make_case(std::move(p), {{0x1p-80, 1, 1}, {}}, "a heavy row", 1);
+  for (std::size_t c = 0; c < 3; ++c) p.S[c][static_cast<Index>(c)] = 1;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (Index c = 0; c < 3; ++c) p.K[r][c] = rows[r].K[c];
+    d.diagonal[r] = rows[r].R_inverse;
+  }
+  return make_case(std::move(p), std::move(d), "tilted rows", 1);
 }
 
-/// A tree without rows, with a fixed joint in it; a body of two freedoms with a row of this size on the second.
-Case lonely_row(double size) {
+/// A tree without rows, with a fixed joint in it; a body of two freedoms (10 and 11) with a row of this size on one of them.
+Case lonely_row(Index freedom, double size) {
   Structure s;
   s.add_body(ground, 6);
   s.add_body(0, 0);
@@ -95,23 +102,29 @@ Case lonely_row(double size) {
   Problem<double> p(std::make_shared<const Structure>(std::move(s)));
   for (auto& H : p.H) H.diagonal() << 2, 3, 4, 5, 5, 5;
   for (std::size_t c = 0; c < p.S.size(); ++c) p.S[c][static_cast<Index>(c % 6)] = 1;
-  p.K[0][5] = size;
+  p.K[0][freedom % 6] = size;
   return make_case(std::move(p), Damping<double>::uniform(1, 0.5), "a lonely row", 1);
 }
 
 }  // namespace
 
 std::string square_root_limits_wrong() {
-  for (const Case& c : {many_rows(0), many_rows(3), tilted_row(), lonely_row(1)}) {
+  const Row light = {{0.75, 0.625, 0.5}, 1}, other = {{0.875, -0.5, 0.25}, 1};
+  const Case second_first = tilted_rows({{{0x1p-40, 1, 0x1p-40}, 0x1p-80}, light, other});
+  const Case third_second = tilted_rows({{{1, 0.5, 0}, 0x1p-120}, {{0x1p-30, 0x1p-30, 1}, 0x1p-60}, light, other});
+  for (const Case& c : {many_rows(0), many_rows(3), second_first, third_second, lonely_row(11, 1)}) {
     const std::string words = square_root_wrong(c);
     if (!words.empty()) return words;
   }
-  const Case overflows = lonely_row(0x1p600);
-  SquareRootFactor<double> factor;
-  factor.analyze(*overflows.problem.structure);
-  const Report lost = factor.update(overflows.problem, overflows.damping);
-  if (lost.status == Status::lost_pivot && lost.where == 11) return {};
-  return "SquareRootFactor, squares overflow: " + std::string(name(lost.status)) + " at " + std::to_string(lost.where);
+  for (const Index freedom : {10, 11}) {
+    const Case overflows = lonely_row(freedom, 0x1p600);
+    SquareRootFactor<double> factor;
+    factor.analyze(*overflows.problem.structure);
+    const Report lost = factor.update(overflows.problem, overflows.damping);
+    if (lost.status != Status::lost_pivot || lost.where != freedom)
+      return "SquareRootFactor, squares overflow: " + std::string(name(lost.status)) + " at " + std::to_string(lost.where);
+  }
+  return {};
 }
 
 std::string square_root_wrong(const Case& c) {

@@ -77,6 +77,22 @@ TEST(Rungs, OfAnswersThatAreNotGoodEnoughTheFirstWithTheSmallestBoundIsKept) {
   EXPECT_GE(kept.size(), 2U);
 }
 
+TEST(Rungs, WhatAnAnswerCostIsReported) {
+  const Problem<double> p = sliding(1, {{1, 0}, {0.5, 1}});
+  const MatrixX<double> a = MatrixX<double>::Ones(2, 1);
+  const Report soft = asked("ladder", p, Damping<double>::uniform(2, 1), a, Accuracy::full()).report;
+  EXPECT_TRUE(soft.ok() && soft.rungs_tried == 1);
+  const auto hard = Damping<double>::uniform(2, 0);
+  const Report third = asked("ladder", p, hard, a, Accuracy::full()).report;
+  EXPECT_EQ(third.rung, "proximal");
+  EXPECT_EQ(third.rungs_tried, 3);
+  EXPECT_EQ(third.iterations, asked("proximal", p, hard, a, Accuracy::full()).report.iterations);
+  EXPECT_GT(third.iterations, 0);
+  const Report stopped = asked("ladder", p, Damping<double>::uniform(2, 1), a, {1e-20, 0}).report;
+  EXPECT_EQ(stopped.status, Status::not_converged);
+  EXPECT_EQ(stopped.rungs_tried, 1);
+}
+
 TEST(Rungs, TheDenseOneTakesSoManyRows) {
   const auto bytes = [](Index rows) {
     const auto op = find_operator("ladder").make<double>();
