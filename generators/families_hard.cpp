@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "algorithms/status.h"
 #include "generators/draft.h"
 
 namespace delassus::generators {
@@ -22,7 +23,8 @@ Spec damped(std::string_view base, std::string_view name, Index n, std::uint64_t
   return s;
 }
 
-/// A common family in other units: lengths, masses and R⁻¹ moved by whole decades, so that the machine stays similar.
+/// A common family in other units: lengths, masses and R⁻¹ moved by whole decades, so that the machine stays similar. R⁻¹
+/// stays within 10^±300.
 Spec scaled(std::string_view base, std::string_view name, Index n, std::uint64_t seed, int length, int mass) {
   Spec s = find_family(base).make(n, seed);
   s.family = name;
@@ -32,8 +34,8 @@ Spec scaled(std::string_view base, std::string_view name, Index n, std::uint64_t
     if (b.armature_decade) *b.armature_decade += mass + 2 * length;
   }
   for (LinkConstraintSpec& c : s.links) {
-    c.damping.low -= mass;
-    c.damping.high -= mass;
+    c.damping.low = std::clamp(c.damping.low - mass, -300, 300);
+    c.damping.high = std::clamp(c.damping.high - mass, -300, 300);
   }
   return s;
 }
@@ -247,9 +249,13 @@ Spec world_frame(Index n, std::uint64_t seed) {
 
 Spec micrometre(Index n, std::uint64_t seed) { return scaled("swimmer", "micrometre", n, seed, -6, -15); }
 Spec kilometre(Index n, std::uint64_t seed) { return scaled("swimmer", "kilometre", n, seed, 3, 12); }
-/// Here n is the decade.
-Spec tiny_numbers(Index n, std::uint64_t seed) { return scaled("swimmer", "tiny_numbers", 3, seed, 0, static_cast<int>(-n)); }
-Spec huge_numbers(Index n, std::uint64_t seed) { return scaled("swimmer", "huge_numbers", 3, seed, 0, static_cast<int>(n)); }
+/// Here n is the decade: 10^307 kg is the largest mass there is, 10^-320 kg about the smallest.
+int decade(Index n, Index most) {
+  if (n < 0 || n > most) throw ModelError("", "n", "10^±" + std::to_string(n) + " kg is no number in double", "0 to " + std::to_string(most));
+  return static_cast<int>(n);
+}
+Spec tiny_numbers(Index n, std::uint64_t seed) { return scaled("swimmer", "tiny_numbers", 3, seed, 0, -decade(n, 320)); }
+Spec huge_numbers(Index n, std::uint64_t seed) { return scaled("swimmer", "huge_numbers", 3, seed, 0, decade(n, 307)); }
 
 /// Links of 1 cm and 1 mg to 100 m and 1000 t, turning and sliding, rows in newton and newton metre.
 Spec mixed_units(Index n, std::uint64_t seed) {

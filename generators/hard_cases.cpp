@@ -43,8 +43,8 @@ const std::vector<HardCase>& hard_cases() {
       {"micrometre", "Moments are 1e-12 of forces: rows differ by their units.", {4, 16}},
       {"kilometre", "The same the other way round.", {4, 16}},
       {"mixed_units", "Every magnitude of SI in one chain.", {6, 15}},
-      {"tiny_numbers", "Float ends at 1e-38, squares end at 1e-154.", {30, 150}},
-      {"huge_numbers", "Float ends at 1e38, squares end at 1e154.", {30, 150}},
+      {"tiny_numbers", "Float ends at 1e-38, squares at 1e-154, A at masses of 1e-308 kg; below 2e-308 numbers lose their digits.", {30, 150, 300, 310, 320}},
+      {"huge_numbers", "Float ends at 1e38, squares at 1e154, masses at 1e308 kg.", {30, 150, 300, 307}},
   };
   return table;
 }

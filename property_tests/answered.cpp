@@ -1,13 +1,58 @@
 #include "property_tests/answered.h"
 
+#include <cmath>
+
 namespace delassus::laws {
 namespace {
 
+/// Exponent of the largest |number|; 0 when all are zero.
+template <class Numbers> int exponent(const Numbers& numbers) {
+  double most = 0;
+  for (const double x : numbers) most = std::max(most, std::fabs(x));
+  return most > 0 ? std::ilogb(most) : 0;
+}
+
+void multiply(std::vector<double>& numbers, int power) {
+  for (double& x : numbers) x = std::ldexp(x, power);
+}
+
+/// 2^power in Quad, beyond the range of double too.
+Quad power_of_two(int power) { return Quad(std::ldexp(1.0, power / 2)) * Quad(std::ldexp(1.0, power - power / 2)); }
+
+/// A question whose forces are 2^power times those of another.
+struct Scaled {
+  Case c;
+  MatrixX<double> a;
+  int power = 0;
+};
+
+/// The same in units in which masses and a are about one: powers of two, so that no number is rounded. Unchanged where
+/// they are within 2^±300.
+Scaled about_one(const Question& q) {
+  std::vector<double> inertias;
+  for (const auto& H : q.c.problem.H) inertias.insert(inertias.end(), H.data(), H.data() + H.size());
+  const int mass = exponent(inertias), acceleration = -exponent(q.a);
+  if (std::max(std::abs(mass), std::abs(acceleration)) < 300) return {q.c, q.a};
+  Problem<double> p = q.c.problem;
+  Damping<double> d = q.c.damping;
+  for (auto& H : p.H) H = H.unaryExpr([=](double x) { return std::ldexp(x, -mass); }).eval();
+  multiply(p.armature, -mass);
+  multiply(d.diagonal, mass);
+  for (auto& b : d.blocks) b.R_inverse = b.R_inverse.unaryExpr([=](double x) { return std::ldexp(x, mass); }).eval();
+  MatrixX<double> a = q.a.unaryExpr([=](double x) { return std::ldexp(x, acceleration); });
+  return {make_case(std::move(p), std::move(d), q.c.label, q.c.seed), std::move(a), acceleration - mass};
+}
+
 /// Largest error / (eps · bound of the operator's error class); −1: no bound.
 double law_ratio(const OperatorRow& row, const Question& q, const MatrixX<double>& f) {
-  if (why_no_bound(Function::solve, q.c)) return -1;
-  const MatrixX<Quad> error = converted<Quad>(f) - MatrixX<Quad>(q.lambda);
-  return judge(error, error_bound(Function::solve, row, q.c, q.a), unit_roundoff<double>, "").ratio;
+  const Scaled scaled = about_one(q);
+  if (why_no_bound(Function::solve, scaled.c)) return -1;
+  const Quad unit = power_of_two(scaled.power);
+  const MatrixX<Quad> error = (converted<Quad>(f) - MatrixX<Quad>(q.lambda)) * unit;
+  MatrixX<Quad> bound = error_bound(Function::solve, row, scaled.c, scaled.a);
+  for (Quad& b : bound.reshaped())  // half the least denormal number: eps · 2⁻¹⁰²²
+    if (b > Quad(0)) b += Quad(0x1p-1022) * unit;
+  return judge(error, bound, unit_roundoff<double>, "").ratio;
 }
 
 std::string broken_promise(const OperatorRow& row, const Question& q, const Answered& given, const MatrixX<double>& f) {

@@ -24,7 +24,8 @@ struct Answered {
 
 /// update and solve in double. Promised is that
 ///   an answer called ok or not_converged is no further off than its certificate says;
-///   one called ok holds no NaN and is within the bound of its error class (none beyond the size of the dense bounds);
+///   one called ok holds no NaN and is within the bound of its error class (none beyond the size of the dense bounds), taken
+///   in units in which masses and a are about one, where it neither overflows nor underflows;
 ///   any other holds no numbers.
 [[nodiscard]] Answered answered(const OperatorRow& row, const Question& question);
 

@@ -2,8 +2,10 @@
 //
 //   hard_cases [--family NAME] [--largest N] [--markdown]
 //
-// The right-hand side is an acceleration that forces of about one newton cause; the truth is truth.h. Exit code 1 when an
-// answer breaks a promise (answered.h).
+// The right-hand side of the tables is an acceleration that forces of about one newton cause; where that is beyond 10^±100,
+// promises are held for one of about one m/s² too. The truth is truth.h. Exit code 1 when an answer breaks a promise
+// (answered.h) that is not in `broken_so_far`, or one in there is kept.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +14,7 @@
 
 #include "generators/families_hard.h"
 #include "property_tests/answered.h"
+#include "property_tests/options.h"
 #include "property_tests/route.h"
 
 namespace {
@@ -53,24 +56,57 @@ bool too_large(const OperatorRow& row, const Structure& s) { return row.name == 
 /// A row of text per operator: one cell per size.
 using Table = std::map<std::size_t, std::vector<std::string>>;
 
+/// Promises that are broken, and ought to be kept.
+constexpr struct {
+  std::string_view family, op, why;
+  Index n;
+} broken_so_far[] = {
+    {"huge_numbers", "cg", "‖x‖² overflows, and the backward error is 0", 300},
+    {"huge_numbers", "cg", "‖x‖² overflows, and the backward error is 0", 307},
+    {"huge_numbers", "lcaba_float", "the certificate's squares underflow", 307},
+};
+
+bool known_broken(const HardCase& h, Index n, const OperatorRow& row) {
+  return std::any_of(std::begin(broken_so_far), std::end(broken_so_far),
+                     [&](const auto& b) { return b.family == h.family && b.n == n && b.op == row.name; });
+}
+
+/// What is asked of a case; the first question is that of the table.
+std::vector<Question> questions(const Case& c, const Truth& truth) {
+  std::vector<Question> all{{c, truth.regular() ? &truth : nullptr, truth.reachable(vectors<double>(c.rows(), 1, 1)), {}}};
+  const double size = all[0].a.size() > 0 ? all[0].a.cwiseAbs().maxCoeff() : 1;
+  if (!(size > 1e-100 && size < 1e100)) all.push_back({c, all[0].truth, vectors<double>(c.rows(), 1, 2), {}});
+  for (Question& q : all)
+    if (q.truth) q.lambda = truth.solve(q.a);
+  return all;
+}
+
+/// One operator's answers; `cell` becomes that to the first question. Returns how many lines it printed.
+int check_operator(const HardCase& h, Index n, const OperatorRow& row, const std::vector<Question>& asked, std::string& cell) {
+  std::string broken;
+  for (const Question& q : asked) {
+    const Answered given = answered(row, q);
+    if (&q == &asked.front()) cell = cell_text(given, q.truth != nullptr);
+    if (broken.empty()) broken = given.broken;
+  }
+  const bool known = known_broken(h, n, row);
+  if (broken.empty() != known) return 0;
+  std::cout << (known ? "no longer broken: " : "broken: ") << h.family << " n=" << n << ", " << row.name << ": " << broken << '\n';
+  return 1;
+}
+
 int check_size(const HardCase& h, Index n, Table& table) {
   const Case c = make_case(h.family, n, 1);
   const Truth truth(c.problem, c.damping);
-  Question q{c, truth.regular() ? &truth : nullptr, truth.reachable(vectors<double>(c.rows(), 1, 1)), {}};
-  if (q.truth) q.lambda = truth.solve(q.a);
-  int broken = 0;
+  const std::vector<Question> asked = questions(c, truth);
+  int wrong = 0;
   for (std::size_t k = 0; k < operators().size(); ++k) {
     const OperatorRow& row = operators()[k];
     if (!row.solves) continue;
     table[k].emplace_back("–");
-    if (too_large(row, *c.problem.structure)) continue;
-    const Answered cell = answered(row, q);
-    table[k].back() = cell_text(cell, q.truth != nullptr);
-    if (cell.broken.empty()) continue;
-    std::cout << "broken: " << c.label << ", " << row.name << ": " << cell.broken << '\n';
-    ++broken;
+    if (!too_large(row, *c.problem.structure)) wrong += check_operator(h, n, row, asked, table[k].back());
   }
-  return broken;
+  return wrong;
 }
 
 void print(const Options& o, const HardCase& h, const Table& table) {
@@ -97,20 +133,9 @@ int check_family(const Options& o, const HardCase& h) {
   return broken;
 }
 
-Options read(int argc, char** argv) {
-  Options o;
-  for (int k = 1; k < argc; ++k) {
-    const std::string key = argv[k];
-    if (key == "--markdown") o.markdown = true;
-    else if (key == "--family" && k + 1 < argc) o.family = generators::find_family(argv[++k]).name;
-    else if (key == "--largest" && k + 1 < argc) o.largest = std::stoll(argv[++k]);
-    else throw ModelError("command line", key, "is unknown or has no value", "--family NAME --largest N --markdown");
-  }
-  return o;
-}
-
 int run(const Options& o) {
   int broken = 0;
+  if (!o.family.empty()) static_cast<void>(generators::find_family(o.family));  // throws, listing the names
   if (!o.markdown) std::cout << "status unless ok, log10 of λ error, motion error, backward error, (bound); one cell per size\n";
   for (const HardCase& h : generators::hard_cases())
     if (o.family.empty() || o.family == h.family) broken += check_family(o, h);
@@ -121,10 +146,11 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(read(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "hard_cases: " << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app{"The catalogue of hard cases: what every operator that solves makes of it.\n"
+               "Exit code 1 when an answer breaks a promise."};
+  Options o;
+  app.add_option("--family", o.family, "only this family of the catalogue");
+  app.add_option("--largest", o.largest, "leave out sizes above this")->check(options::whole(0))->capture_default_str();
+  app.add_flag("--markdown", o.markdown, "tables for a page");
+  return options::run(app, argc, argv, [&] { return run(o); });
 }

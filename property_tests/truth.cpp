@@ -96,7 +96,8 @@ Truth::Truth(const Problem<double>& problem, const Damping<double>& damping) {
 VectorX<Quad> Truth::solve(const VectorX<double>& a) const { return factor_->solve(MatrixX<Quad>(quad(a))); }
 
 VectorX<double> Truth::reachable(const VectorX<double>& x) const {
-  const VectorX<Quad> y = times(A0_, quad(x));
+  VectorX<Quad> y = times(A0_, quad(x));
+  while (largest(y) > Quad(0x1p1000)) y *= Quad(0x1p-100);
   VectorX<double> a(x.size());
   for (Index r = 0; r < x.size(); ++r) a[r] = static_cast<double>(y[r]);
   return a;
@@ -105,8 +106,10 @@ VectorX<double> Truth::reachable(const VectorX<double>& x) const {
 Quad Truth::energy(const VectorX<Quad>& x) const { return norm(A_, x); }
 
 double Truth::rounding(const VectorX<Quad>& lambda) const {
-  const Quad most = norm(entrywise(A_), VectorX<Quad>(entrywise(MatrixX<Quad>(lambda))));
-  return unit_roundoff<double> * relative(most, energy(lambda));
+  const Quad least(Quad(0x1p-1074) / Quad(2));
+  VectorX<Quad> e = entrywise(MatrixX<Quad>(lambda));
+  for (Quad& x : e) x = std::max(Quad(Quad(unit_roundoff<double>) * x), least);
+  return relative(norm(entrywise(A_), e), energy(lambda));
 }
 
 double Truth::violation(double error, double bound, double rounding) const {

@@ -4,8 +4,9 @@
 //
 // A certificate B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ of a pair (ν, λ) bounds that of λ alone: from (K) of algorithms/refinement.h,
 // A δλ = r₂ − J M⁻¹r₁, so ‖δλ‖²_A = δλᵀr₂ − (M⁻¹Jᵀδλ)ᵀr₁ ≤ ‖δλ‖_A B, by Cauchy and Schwarz.
-// A refined λ is rounded to double when it is returned. That changes it by e, |e_r| ≤ eps |λ_r|, and its energy by at most
-//   ‖e‖_A ≤ eps √(|λ|ᵀ|A||λ|)                                  `rounding`
+// A refined λ is rounded to double when it is returned. That changes it by e, |e_r| ≤ eps |λ_r|, or half the least denormal
+// number 2⁻¹⁰⁷⁴ where λ_r is below that, and its energy by at most
+//   ‖e‖_A ≤ √(|e|ᵀ|A||e|)                                      `rounding`
 // which is more than eps ‖λ‖_A where forces cancel: no answer in double can be expected to be better.
 // B² itself is evaluated with the factors of M and R⁻¹, to a relative eps κ, κ the larger condition number of the two when
 // brought to unit diagonal (Higham, section 10.1): `violation` counts an excess over the bound in units of that.
@@ -35,13 +36,13 @@ class Truth {
   [[nodiscard]] bool regular() const { return factor_->regular(); }
   /// λ = A⁻¹ a. Shapes m. @throws std::runtime_error when A is singular.
   [[nodiscard]] VectorX<Quad> solve(const VectorX<double>& a) const;
-  /// J M⁻¹Jᵀ x, rounded: an acceleration that forces can cause. Shapes m.
+  /// J M⁻¹Jᵀ x, rounded: an acceleration that forces can cause; of x times a power of two where it would exceed 2¹⁰⁰⁰. Shapes m.
   [[nodiscard]] VectorX<double> reachable(const VectorX<double>& x) const;
   /// Shapes m. λ̂ holds no NaN.
   [[nodiscard]] Errors errors(const VectorX<double>& a, const VectorX<Quad>& lambda, const VectorX<double>& answer) const;
   /// √(xᵀ A x).
   [[nodiscard]] Quad energy(const VectorX<Quad>& x) const;
-  /// eps √(|λ|ᵀ|A||λ|) / ‖λ‖_A.
+  /// √(|e|ᵀ|A||e|) / ‖λ‖_A.
   [[nodiscard]] double rounding(const VectorX<Quad>& lambda) const;
   /// (error − bound − rounding) / (eps κ bound), 0 when the error is not above; to be judged below 30 (verdict.h).
   [[nodiscard]] double violation(double error, double bound, double rounding) const;
