@@ -22,11 +22,13 @@ std::vector<std::pair<Index, Index>> wide_constraints(const Structure& s) {
 template <class T> void Ladder<T>::do_analyze() {
   const Structure& s = *this->structure();
   rungs_.clear();
+  workspace_ = 0;
   for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
     const OperatorRow& row = find_operator(name);
     if (!std::get<Maker<T>>(row.makers) || (row.decides_rank && s.rows > max_dense_rows)) continue;
-    rungs_.push_back({.row = &row, .op = row.make<T>()});
-    rungs_.back().op->analyze(this->structure());
+    Rung& rung = rungs_.emplace_back(row, row.make<T>());
+    rung.op->analyze(this->structure());
+    workspace_ = std::max(workspace_, rung.op->workspace());
   }
   first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
   problem_ = Problem<T>(this->structure());
@@ -92,13 +94,14 @@ template <class T> Report Ladder<T>::first_usable() {
 }
 
 template <class T> Report Ladder<T>::prepare(Rung& rung) const {
+  if (rung.state.load(std::memory_order_acquire) == State::current) return rung.updated;
   const std::lock_guard lock(preparing_);
   if (rung.state == State::stale) {
     if (!std::exchange(problem_is_current_, true)) first_->numbers(problem_);
     rung.updated = rung.op->update(problem_, *damping_);
   }
   if (rung.state == State::stale_damping) rung.updated = rung.op->update_damping(*damping_);
-  rung.state = State::current;
+  rung.state.store(State::current, std::memory_order_release);
   return rung.updated;
 }
 
@@ -106,7 +109,7 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
   const Index m = this->size();
   const Eigen::Map<const MatrixX<T>> right(a, m, 1);
   Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
-  Workspace<T> rest(workspace + padded(m), do_workspace(1) - padded(m));
+  Workspace<T> rest(workspace + padded(m), workspace_);
   Report best{Status::not_supported};
   int steps = 0, tried = 0;
   for (Rung& rung : rungs_) {
@@ -126,11 +129,7 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
   return best;
 }
 
-template <class T> Index Ladder<T>::do_workspace(Index) const {
-  Index most = 0;
-  for (const Rung& rung : rungs_) most = std::max(most, rung.op->workspace());
-  return padded(this->size()) + most;
-}
+template <class T> Index Ladder<T>::do_workspace(Index) const { return padded(this->size()) + workspace_; }
 
 template <class T> Index Ladder<T>::do_bytes() const {
   Index all = 0;

@@ -14,6 +14,8 @@
 // Error    refined.
 #pragma once
 
+#include <atomic>
+#include <deque>
 #include <mutex>
 
 #include "algorithms/lcaba_refined.h"
@@ -35,9 +37,10 @@ template <class T> class Ladder : public ColumnByColumn<T> {
  private:
   enum class State : std::uint8_t { stale, stale_damping, current };
   struct Rung {
+    Rung(const OperatorRow& r, std::unique_ptr<Operator<T>> o) : row(&r), op(std::move(o)) {}
     const OperatorRow* row;
     std::unique_ptr<Operator<T>> op;
-    State state = State::stale;
+    std::atomic<State> state = State::stale;
     Report updated = {};
   };
   void keep(const Damping<T>& damping);
@@ -46,7 +49,8 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   /// Brings a rung up to the numbers of the last update.
   Report prepare(Rung& rung) const;
 
-  mutable std::vector<Rung> rungs_;
+  mutable std::deque<Rung> rungs_;
+  Index workspace_ = 0;                // the most a rung needs
   const LcabaRefined<T>* first_ = nullptr;
   mutable std::mutex preparing_;
   mutable Problem<T> problem_;         // what the first rung was given; current when another was factored since
