@@ -61,15 +61,19 @@ TEST(Rungs, OfAnswersThatAreNotGoodEnoughTheFirstWithTheSmallestBoundIsKept) {
       const MatrixX<double> a = MatrixX<double>::Ones(built.problem.structure->rows, 1);
       Said best;
       std::string_view rung;
+      int steps = 0, until_best = 0;
       for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
         const Said said = asked(name, built.problem, d, a, {1e-20});
+        steps += said.report.iterations;
         if (said.report.status != Status::not_converged || (!rung.empty() && !(said.report.error_bound < best.report.error_bound))) continue;
         best = said;
+        until_best = steps;
         rung = name;
       }
       const Said ladder = asked("ladder", built.problem, d, a, {1e-20});
       EXPECT_EQ(ladder.report.status, Status::not_converged);
       EXPECT_EQ(ladder.report.rung, rung) << family << ' ' << damping;
+      EXPECT_EQ(ladder.report.iterations, until_best) << family << ' ' << damping;
       EXPECT_EQ(ladder.report.error_bound, best.report.error_bound) << family << ' ' << damping;
       EXPECT_TRUE(laws::judge_bits(ladder.f, best.f).passed()) << family << ' ' << damping;
       kept.insert(rung);
@@ -88,9 +92,23 @@ TEST(Rungs, WhatAnAnswerCostIsReported) {
   EXPECT_EQ(third.rungs_tried, 3);
   EXPECT_EQ(third.iterations, asked("proximal", p, hard, a, Accuracy::full()).report.iterations);
   EXPECT_GT(third.iterations, 0);
-  const Report stopped = asked("ladder", p, Damping<double>::uniform(2, 1), a, {1e-20, 0}).report;
-  EXPECT_EQ(stopped.status, Status::not_converged);
-  EXPECT_EQ(stopped.rungs_tried, 1);
+}
+
+TEST(Rungs, NoneIsAskedWhenTheStepsAreUsedUp) {
+  int later_better = 0;
+  for (const char* family : {"redundant", "humanoid", "mixed_damping"})
+    for (const double damping : {1e-8, 1e-10, 1e-12, 1e-14}) {
+      const auto built = generators::build(generators::find_family(family).make(6, 1));
+      const Index m = built.problem.structure->rows;
+      const auto ask = [&](std::string_view name) {
+        return asked(name, built.problem, Damping<double>::uniform(m, damping), MatrixX<double>::Ones(m, 1), {1e-20, 0}).report;
+      };
+      const Report ladder = ask("ladder"), first = ask("lcaba_refined");
+      EXPECT_EQ(ladder.error_bound, first.error_bound) << family << ' ' << damping;
+      EXPECT_EQ(ladder.rungs_tried, 1) << family << ' ' << damping;
+      later_better += ask("lcaba_qr").error_bound < first.error_bound;
+    }
+  EXPECT_GT(later_better, 0);
 }
 
 TEST(Rungs, TheDenseOneTakesSoManyRows) {
