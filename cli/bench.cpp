@@ -10,6 +10,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -115,9 +116,9 @@ void add_bench(CLI::App& app, Run& run) {
   auto o = std::make_shared<Options>();
   c->add_option("--scene", o->scenes, "only these scenes (also files and swimmer:N)");
   c->add_option("--op", o->ops, "only these operators");
-  c->add_option("--budget", o->budget, "seconds of timing per phase")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--budget", o->budget, "seconds of timing per phase")->check(options::above(0, "s"))->capture_default_str();
   c->add_option("--baseline", o->baseline, "JSON of an earlier run on the same machine");
-  c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(options::above(0, ""))->capture_default_str();
   c->add_flag("--json", o->as_json, "{machine, units, scenes}");
   c->footer("Times are the lowest of several batches. Exit code 3 when a phase is slower than slack × baseline or needs "
             "more counted operations.");

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "property_tests/defects.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -80,6 +81,19 @@ void print_line(std::string_view law, const Line& l) {
   std::printf("  %s %s %8s  %3d checked%s  %s%s%s\n", l.failed ? "✗" : "✓", name.c_str(), bench::three_digits(l.ratio).c_str(),
               l.checked, l.skipped ? bench::format(", %d skipped", l.skipped).c_str() : "", l.label.c_str(),
               l.note.empty() ? "" : ": ", l.note.c_str());
+  std::fflush(stdout);
+}
+
+/// What is about to be checked, so that large problems are seen to be under way.
+void print_cases(const std::vector<laws::Case>& all) {
+  if (all.size() == 1) {
+    const Structure& s = *all[0].problem.structure;
+    std::printf("%s: %lld bodies, %lld freedoms, %lld rows\n", all[0].label.c_str(), static_cast<long long>(s.bodies()),
+                static_cast<long long>(s.dofs()), static_cast<long long>(s.rows));
+  } else {
+    std::printf("%zu cases\n", all.size());
+  }
+  std::fflush(stdout);
 }
 
 int check(const Options& o) {
@@ -90,18 +104,18 @@ int check(const Options& o) {
   const std::vector<laws::Case> all = cases(o);
   int failed = 0;
   json out = json::array();
+  if (!o.as_json) print_cases(all);
   for (const OperatorRow* op : ops) {
-    std::vector<Line> lines(laws::laws().size());
-    for (const laws::Case& c : all)
-      for (std::size_t i = 0; i < lines.size(); ++i)
-        if (laws::laws()[i].name == left_out) lines[i].why_skipped = "its right operator breaks it too";
-        else lines[i].add(laws::check(laws::laws()[i], *op, c));
     json rows = json::array();
     if (!o.as_json) std::printf("%s\n", std::string(op->name).c_str());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      failed += lines[i].failed;
-      if (o.as_json) rows.push_back(line_json(laws::laws()[i].name, lines[i]));
-      else print_line(laws::laws()[i].name, lines[i]);
+    for (const laws::LawRow& law : laws::laws()) {
+      Line line;
+      if (law.name == left_out) line.why_skipped = "its right operator breaks it too";
+      else
+        for (const laws::Case& c : all) line.add(laws::check(law, *op, c));
+      failed += line.failed;
+      if (o.as_json) rows.push_back(line_json(law.name, line));
+      else print_line(law.name, line);
     }
     out.push_back({{"name", op->name}, {"laws", rows}});
   }
@@ -124,11 +138,11 @@ void add_check(CLI::App& app, Run& run) {
   c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`)");
   c->add_option("--family", o->family, "one family of random problems (see `delassus list families`)");
   c->add_option("scene,--scene", o->scene, "a scene instead of families");
-  c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(CLI::PositiveNumber);
-  c->add_option("--seed", o->seed, "of the problem and its vectors")->capture_default_str();
+  c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(options::whole(1));
+  c->add_option("--seed", o->seed, "of the problem and its vectors")->check(options::whole(0))->capture_default_str();
   c->add_flag("--json", o->as_json, "an array of {name, laws}; with --digits an object");
   auto* digits = c->add_flag("--digits", o->digits, "instead: digits lost by every link, by random rounding (docs/digits.md); --op lcaba or aba_sweep");
-  c->add_option("--damping", o->damping, "with --digits: R⁻¹ of every row [1/kg]")->needs(digits);
+  c->add_option("--damping", o->damping, "with --digits: R⁻¹ of every row [1/kg]")->check(options::at_least(0, "1/kg"))->needs(digits);
   c->add_option("--picture", o->picture, "with --digits: SVG of the scene, or of digits against link for a family")->needs(digits);
   c->footer("Without --family and --scene: every family. Exit code 1 when a law is broken.");
   c->callback([=, &run] { run = [=] { return o->digits ? digits_of(*o) : check(*o); }; });

@@ -78,6 +78,28 @@ digits::Measured measured(const Subject& s, const DigitsOptions& o) {
   return m;
 }
 
+/// What the operator says in double, update or solve; random rounding takes the branches of the mean and may get further.
+Report in_double(const Subject& s, const DigitsOptions& o) {
+  const OperatorRow& row = find_operator(o.op);
+  const auto op = row.make<double>();
+  op->analyze(s.problem.structure);
+  const Report updated = op->update(s.problem, s.damping);
+  if (!updated.ok() || !row.solves) return updated;
+  Workspace<double> work(op->workspace());
+  const MatrixX<double> a = MatrixX<double>::Ones(s.problem.structure->rows, 1);
+  MatrixX<double> f = a;
+  return op->solve(a, f, work);
+}
+
+/// "lost_pivot at degree of freedom 3"
+std::string outcome(const Report& r) {
+  return std::string(name(r.status)) + (r.where < 0 ? std::string() : format(" at degree of freedom %d", static_cast<int>(r.where)));
+}
+
+void print_warning(const DigitsOptions& o, const Report& r) {
+  if (!r.ok()) std::printf("WARNING: in double %s refuses this problem: %s. The digits are of what it would have computed.\n\n", o.op.c_str(), outcome(r).c_str());
+}
+
 std::string cell(double digits, std::size_t width = 10) { return bench::pad_left(format("%.1f", digits), width); }
 
 const Link& worst_link(const digits::Measured& m) {
@@ -128,7 +150,7 @@ void print(const Subject& s, const DigitsOptions& o, const digits::Measured& m) 
   std::printf("\nFewest digits on a link: %s, %.1f.\n", s.bodies[static_cast<std::size_t>(worst_link(m).body)].c_str(), worst_link(m).fewest());
 }
 
-json to_json(const Subject& s, const DigitsOptions& o, const digits::Measured& m) {
+json to_json(const Subject& s, const DigitsOptions& o, const digits::Measured& m, const Report& refused) {
   json links = json::array(), rows = json::array(), stages = json::array();
   for (const Link& l : m.links)
     links.push_back({{"body", s.bodies[static_cast<std::size_t>(l.body)]}, {"joint", s.joints[static_cast<std::size_t>(l.body)]},
@@ -139,7 +161,7 @@ json to_json(const Subject& s, const DigitsOptions& o, const digits::Measured& m
     rows.push_back({{"row", r}, {"constraint", s.rows[r]}, {"motion", m.motion[r].digits()}, {"result", m.result[r].digits()},
                     {"value", m.result[r].mean()}, {"half_width", m.result[r].half_width()}});
   for (const digits::Stage& stage : m.stages) stages.push_back({{"part", stage.name}, {"kept", stage.kept}, {"cost", stage.cost}});
-  json j = {{"subject", s.label}, {"op", o.op}, {"most_digits", most_digits}, {"report", report_json(m.report)},
+  json j = {{"subject", s.label}, {"op", o.op}, {"most_digits", most_digits}, {"report", report_json(m.report)}, {"in_double", report_json(refused)},
             {"links", links}, {"rows", rows}, {"parts", stages}};
   j["worst_link"] = m.links.empty() ? json(nullptr) : json(s.bodies[static_cast<std::size_t>(worst_link(m).body)]);
   return j;
@@ -180,9 +202,15 @@ int check_digits(const DigitsOptions& o) {
     throw ModelError("", "--damping", format("%g 1/kg", *o.damping), no_damping);
   const Subject s = subject(o);
   const digits::Measured m = measured(s, o);
-  if (o.as_json) std::printf("%s\n", to_json(s, o, m).dump(1).c_str());
-  else if (m.report.ok()) print(s, o, m);
-  else std::printf("%s, %s: %s at degree of freedom %d\n", s.label.c_str(), o.op.c_str(), std::string(name(m.report.status)).c_str(), static_cast<int>(m.report.where));
+  const Report refused = in_double(s, o);
+  if (o.as_json) {
+    std::printf("%s\n", to_json(s, o, m, refused).dump(1).c_str());
+  } else if (m.report.ok()) {
+    print_warning(o, refused);
+    print(s, o, m);
+  } else {
+    std::printf("%s, %s: %s\n", s.label.c_str(), o.op.c_str(), outcome(m.report).c_str());
+  }
   if (!m.report.ok()) return law_broken;
   if (!o.picture.empty()) write_picture(s, o, m);
   return good;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 
 #include "property_tests/defects.h"
 
@@ -50,12 +51,31 @@ json report_json(const Report& r) {
           {"rung", r.rung.empty() ? json(nullptr) : json(r.rung)}, {"rungs_tried", r.rungs_tried}};
 }
 
+namespace {
+
+/// Names the entry at which a text stops being a JSON array of numbers, and what stands there.
+[[noreturn]] void not_json(const std::string& file, const std::string& text, const std::string& accepted) {
+  std::size_t at = text.size();
+  try {
+    const json parsed = json::parse(text);
+  } catch (const json::parse_error& e) {
+    at = std::min(at, e.byte == 0 ? at : e.byte - 1);
+  }
+  const std::size_t begin = at == 0 ? 0 : text.find_last_of(",[ \n\t", at - 1) + 1, end = text.find_first_of(",] \n\t", at);
+  const std::string word = text.substr(begin, std::min<std::size_t>(end - begin, 40));
+  const auto entry = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), ',');
+  throw ModelError(file, "entry " + std::to_string(entry), at == text.size() ? "the array ends too early" : "'" + word + "' is no JSON", accepted);
+}
+
+}  // namespace
+
 VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning) {
   const std::string accepted = "a JSON array of " + std::to_string(size) + " finite numbers, " + meaning;
   std::ifstream stream(file);
   if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
-  const json j = json::parse(stream, nullptr, false);
-  if (j.is_discarded()) throw ModelError(file, "JSON", "is not valid JSON", accepted);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const json j = json::parse(text, nullptr, false);
+  if (j.is_discarded()) not_json(file, text, accepted);
   if (!j.is_array()) throw ModelError(file, "JSON", std::string("is of type ") + j.type_name(), accepted);
   if (static_cast<Index>(j.size()) != size)
     throw ModelError(file, "array", "has " + std::to_string(j.size()) + " entries", accepted);

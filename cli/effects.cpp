@@ -44,12 +44,34 @@ Counts count(const Scene& scene) {
 
 std::string number(Index n, const char* noun) { return bench::format("%lld %s%s", static_cast<long long>(n), noun, n == 1 ? "" : "s"); }
 
+/// In the order in which a scene's effects are told.
+constexpr struct {
+  const char *name, *summary;
+} effects[] = {{"gravity", "a uniform field; not part of A"},
+               {"contacts", "contact points of boxes, feet and ground, 3 rows each"},
+               {"contact friction", "a friction coefficient of contacts; the cone is not part of A"},
+               {"loops", "closures of kinematic loops, closed by assembly"},
+               {"other joints", "further constraints between frames: points, welds, hinges, distances"},
+               {"joint friction", "a row per degree of freedom of the joints it is asked for"},
+               {"joint locks", "rows that hold joints where they are"},
+               {"couplings", "gears and mimic joints, a row each"},
+               {"armature", "rotor inertia reflected to joints, on the diagonal of M"},
+               {"joint damping", "viscous damping in joints; not part of A"},
+               {"joint limits", "limits of joints; they have no rows here"}};
+
 }  // namespace
+
+json effects_list() {
+  json out = json::array();
+  for (const auto& e : effects) out.push_back({{"name", e.name}, {"summary", e.summary}});
+  return out;
+}
 
 json effects_json(const Scene& scene) {
   const Counts n = count(scene);
   json out = json::array();
-  const auto add = [&](const char* name, bool called, const std::string& yes, const std::string& no) {
+  const auto add = [&](std::string_view name, bool called, const std::string& yes, const std::string& no) {
+    require(out.size() < std::size(effects) && name == effects[out.size()].name, "effects_json: not in the order of the table");
     out.push_back({{"name", name}, {"called_for", called}, {"why", called ? yes : no}});
   };
   const std::string not_in_A = "; not part of A";

@@ -5,7 +5,9 @@
 
 namespace delassus::cli {
 
-/// [{name, called_for, why}] in a fixed order.
+/// [{name, summary}]: the table of effects.
+[[nodiscard]] json effects_list();
+/// [{name, called_for, why}] in the order of the table.
 [[nodiscard]] json effects_json(const Scene& scene);
 
 }  // namespace delassus::cli

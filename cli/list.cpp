@@ -7,6 +7,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/effects.h"
 #include "generators/families.h"
 #include "property_tests/defects.h"
 #include "reference/reference.h"
@@ -77,7 +78,7 @@ struct Table {
   json (*rows)();
 };
 constexpr Table tables[] = {{"operators", operators_json}, {"references", references_json}, {"families", families_json},
-                            {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json}};
+                            {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json},     {"effects", effects_list}};
 
 void print_table(const json& rows) {
   std::size_t width = 0;
@@ -132,7 +133,7 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
 }  // namespace
 
 void add_list(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects");
+  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects");
   auto table = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
   std::set<std::string> names;

@@ -11,6 +11,7 @@
 #include "cli/stress_json.h"
 #include "generators/classes.h"
 #include "property_tests/defects.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -22,6 +23,7 @@ struct Options {
   std::int64_t count = 0;
   std::size_t failures = 1;
   std::vector<std::string> ops, merge;
+  bool as_json = false;
 };
 
 /// "90", "90s", "2m" or "1h" in seconds.
@@ -36,7 +38,7 @@ double seconds_of(const std::string& text) {
   const std::string unit = end == std::string::npos ? "?" : text.substr(end);
   const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
   if (factor == 0 || !(value > 0) || !std::isfinite(value))
-    throw ModelError("command line", "--time", "is " + text, "a positive number with s, m or h: 60s, 10m, 2h");
+    throw ModelError("command line", "--time", "is " + text, "a positive number of seconds, or one with s, m or h: 60, 60s, 10m, 2h");
   return factor * value;
 }
 
@@ -132,18 +134,32 @@ void print_failure(const laws::Failure& f) {
               f.spec.links.size() + f.spec.joints.size(), f.tried);
 }
 
-/// Prints what was found and writes the files; the exit code.
-int conclude(const laws::Found& f, const Options& o) {
+/// Where a failure is written.
+std::string path_of(const laws::Failure& f, const Options& o) { return (std::filesystem::path(o.folder) / file_name(f)).string(); }
+
+/// The report of the shard, with the file of every failure.
+void print_json(const laws::Found& f, const Options& o) {
+  json out = found_json(f);
+  for (std::size_t k = 0; k < f.failures.size(); ++k) out["failures"][k]["file"] = path_of(f.failures[k], o);
+  std::printf("%s\n", out.dump(1).c_str());
+}
+
+void print(const laws::Found& f, const Options& o) {
   std::printf("%lld problems in %.1f s, %lld checks (%lld did not apply), %zu failures; classes:\n",
               static_cast<long long>(f.problems), f.seconds, static_cast<long long>(f.checks),
               static_cast<long long>(f.skipped), f.failures.size());
   print_classes(f);
   for (const laws::Failure& x : f.failures) {
-    const std::string file = (std::filesystem::path(o.folder) / file_name(x)).string();
     print_failure(x);
-    write_text(file, failure_json(x).dump(1));
-    std::printf("  delassus replay %s%s\n", file.c_str(), x.op == o.defect ? (" --defect " + o.defect).c_str() : "");
+    std::printf("  delassus replay %s%s\n", path_of(x, o).c_str(), x.op == o.defect ? (" --defect " + o.defect).c_str() : "");
   }
+}
+
+/// Prints what was found and writes the files; the exit code.
+int conclude(const laws::Found& f, const Options& o) {
+  for (const laws::Failure& x : f.failures) write_text(path_of(x, o), failure_json(x).dump(1));
+  if (o.as_json) print_json(f, o);
+  else print(f, o);
   if (!o.report.empty()) {
     std::string file = o.report;
     if (const std::size_t at = file.find("{shard}"); at != std::string::npos) file.replace(at, 7, std::to_string(f.shard));
@@ -165,8 +181,10 @@ int merge(const Options& o) {
 int stress(const Options& o) {
   if (!o.merge.empty()) return merge(o);
   laws::Search s = search_of(o);
-  std::printf("seed %llu, shard %d/%d\n", static_cast<unsigned long long>(s.seed), s.shard, s.shards);
-  s.progress = print_progress;
+  if (!o.as_json) {
+    std::printf("seed %llu, shard %d/%d\n", static_cast<unsigned long long>(s.seed), s.shard, s.shards);
+    s.progress = print_progress;
+  }
   return conclude(laws::search(s), o);
 }
 
@@ -175,16 +193,17 @@ int stress(const Options& o) {
 void add_stress(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("stress", "randomised search for broken laws");
   auto o = std::make_shared<Options>();
-  c->add_option("--time", o->time, "how long: 60s, 10m, 2h")->capture_default_str();
-  c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(CLI::PositiveNumber);
-  c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed");
+  c->add_option("--time", o->time, "how long: 60 or 60s, 10m, 2h")->capture_default_str();
+  c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(options::whole(1));
+  c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed")->check(options::whole(0));
   c->add_option("--shard", o->shard, "i/n: problems i, i + n, …; when left out, rank and size set by the launcher");
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--defect", o->defect, "an operator that is wrong in one respect (see `delassus list defects`): what the search must find");
-  c->add_option("--failures", o->failures, "stop after this many pairs of law and operator")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--failures", o->failures, "stop after this many pairs of law and operator")->check(options::whole(1))->capture_default_str();
   c->add_option("--folder", o->folder, "where failures are written")->check(CLI::ExistingDirectory)->capture_default_str();
   c->add_option("--report", o->report, "write what was done as JSON; {shard} in the name becomes the shard's number");
   c->add_option("--merge", o->merge, "put reports of shards together instead of searching");
+  c->add_flag("--json", o->as_json, "print {seed, shard, shards, problems, checks, skipped, seconds, classes, failures}, the report of --report with the `file` of every failure");
   c->footer("Exit code 1 when a law is broken; the failure is shrunk, written, and the command that replays it printed.");
   c->callback([=, &run] { run = [=] { return stress(*o); }; });
 }

@@ -12,6 +12,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "property_tests/options.h"
 #include "property_tests/route.h"
 
 namespace {
@@ -59,19 +60,8 @@ int broken(const Campaign& campaign, const LadderCell& cell) {
   return count;
 }
 
-Options read(int argc, char** argv) {
-  Options o;
-  for (int k = 1; k < argc; ++k) {
-    const std::string key = argv[k];
-    if (key == "--markdown") o.markdown = true;
-    else if (key == "--judge" && k + 1 < argc) o.judge = find_operator(argv[++k]).name;
-    else if (key == "--family" && k + 1 < argc) o.family = generators::find_family(argv[++k]).name;
-    else throw ModelError("command line", key, "is unknown or has no value", "--judge NAME --family NAME --markdown");
-  }
-  return o;
-}
-
 int run(const Options& o) {
+  if (!o.family.empty()) static_cast<void>(generators::find_family(o.family));  // throws, listing the names
   OperatorRow judged = find_operator(default_rung);
   if (!o.judge.empty()) judged.makers = find_operator(o.judge).makers;
   Campaign campaign;
@@ -97,10 +87,11 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(read(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "accuracy_ladder: " << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app{"The ladder of problems: R λmax from 1e-8 to 1e14, every rung (docs/accuracy_ladder.md).\n"
+               "Exit code 1 when a promise is broken."};
+  Options o;
+  app.add_option("--judge", o.judge, "hold this operator to the promises of the default rung");
+  app.add_option("--family", o.family, "only this mechanism");
+  app.add_flag("--markdown", o.markdown, "tables for a page");
+  return options::run(app, argc, argv, [&] { return run(o); });
 }

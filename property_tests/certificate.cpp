@@ -17,6 +17,7 @@
 #include "algorithms/capped_inverse.h"
 #include "algorithms/refinement.h"
 #include "generators/arbitrary.h"
+#include "property_tests/options.h"
 #include "property_tests/route.h"
 #include "property_tests/truth.h"
 
@@ -27,7 +28,7 @@ using namespace delassus::laws;
 
 struct Options {
   std::uint64_t count = 20000, seed = 1;
-  std::uint64_t shard = 0, shards = 1;
+  options::Shard shard;
   double divide = 1;
   bool markdown = false;
 };
@@ -199,32 +200,10 @@ void print(const Options& o, std::map<std::string_view, Tally>& tallies) {
   }
 }
 
-Options read(int argc, char** argv) {
-  Options o;
-  for (int k = 1; k < argc; ++k) {
-    const std::string key = argv[k];
-    if (key == "--markdown") {
-      o.markdown = true;
-      continue;
-    }
-    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", "--count --seed --shard --divide --markdown");
-    const std::string value = argv[++k];
-    if (key == "--count") o.count = std::stoull(value);
-    else if (key == "--seed") o.seed = std::stoull(value);
-    else if (key == "--divide") o.divide = std::stod(value);
-    else if (key == "--shard" && value.find('/') != std::string::npos) {
-      o.shard = std::stoull(value) - 1;
-      o.shards = std::stoull(value.substr(value.find('/') + 1));
-    } else throw ModelError("command line", key, value, "--count --seed --shard i/n --divide --markdown");
-  }
-  if (o.shard >= o.shards) throw ModelError("command line", "--shard", std::to_string(o.shard + 1), "i/n with 1 <= i <= n");
-  return o;
-}
-
 int run(const Options& o) {
   std::map<std::string_view, Tally> tallies;
   std::uint64_t problems = 0;
-  for (std::uint64_t k = o.shard; k < o.count; k += o.shards) problems += check_problem(o, o.seed + k, tallies) ? 1 : 0;
+  for (std::uint64_t k = o.shard.number - 1; k < o.count; k += o.shard.of) problems += check_problem(o, o.seed + k, tallies) ? 1 : 0;
   std::printf("%llu problems of seeds %llu to %llu\n\n", static_cast<unsigned long long>(problems),
               static_cast<unsigned long long>(o.seed), static_cast<unsigned long long>(o.seed + o.count - 1));
   print(o, tallies);
@@ -235,10 +214,13 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(read(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "certificate: " << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app{"Certificates of random problems against the truth (docs/hard_cases.md).\n"
+               "Exit code 1 when one is violated."};
+  Options o;
+  app.add_option("--count", o.count, "problems, of all shards together")->check(options::whole(1))->capture_default_str();
+  app.add_option("--seed", o.seed, "of the first")->check(options::whole(0))->capture_default_str();
+  options::add_shard(app, o.shard);
+  app.add_option("--divide", o.divide, "divide every bound by this: the program must fail")->check(options::above(0, ""))->capture_default_str();
+  app.add_flag("--markdown", o.markdown, "a table for a page");
+  return options::run(app, argc, argv, [&] { return run(o); });
 }

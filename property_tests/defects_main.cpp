@@ -16,6 +16,7 @@
 
 #include "property_tests/allocations.h"
 #include "property_tests/defects_matrix.h"
+#include "property_tests/options.h"
 
 namespace {
 
@@ -107,17 +108,20 @@ int outdated(const DefectMatrix& m, const std::string& file) {
   return static_cast<int>(all.size());
 }
 
-int run(const std::vector<std::string>& arguments) {
-  const bool markdown = arguments == std::vector<std::string>{"--markdown"};
-  const bool compared = arguments.size() == 2 && arguments[0] == "--page", all = arguments.empty() || markdown || compared;
+struct Options {
+  std::vector<std::string> names;
+  std::string page;
+  bool markdown = false;
+};
+
+int run(const Options& o) {
   std::vector<const DefectRow*> rows;
-  if (all)
+  for (const std::string& name : o.names) rows.push_back(&find_defect(name));
+  if (rows.empty())
     for (const DefectRow& d : defects()) rows.push_back(&d);
-  else
-    for (const std::string& name : arguments) rows.push_back(&find_defect(name));
-  const DefectMatrix m = measure(rows, markdown);
-  const int wrong = missed(m, all) + (compared ? outdated(m, arguments[1]) : 0);
-  if (markdown) std::cout << page(m);
+  const DefectMatrix m = measure(rows, o.markdown);
+  const int wrong = missed(m, o.names.empty()) + (o.page.empty() ? 0 : outdated(m, o.page));
+  if (o.markdown) std::cout << page(m);
   else std::cout << (wrong == 0 ? "every defect is caught, every law catches one\n" : "FAILED\n");
   return wrong == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
@@ -126,10 +130,11 @@ int run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   count_allocations();
-  try {
-    return run({argv + 1, argv + argc});
-  } catch (const std::exception& e) {
-    std::cerr << "defects: " << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app{"Tests of the tests: every defect must be caught by a law, every law must catch a defect (docs/defects.md).\n"
+               "Exit code 1 when something goes uncaught, or a right operator breaks a law."};
+  Options o;
+  CLI::Option* names = app.add_option("NAME", o.names, "these defects alone (see `delassus list defects`)");
+  app.add_flag("--markdown", o.markdown, "the matrix defect × law for a page")->excludes(names);
+  app.add_option("--page", o.page, "a page that must show this matrix")->excludes(names)->check(CLI::ExistingFile);
+  return options::run(app, argc, argv, [&] { return run(o); });
 }

@@ -42,6 +42,18 @@ CLI::Validator whole(std::int64_t least) {
   });
 }
 
+void add_shard(CLI::App& app, Shard& shard) {
+  const auto take = [&shard](const std::string& text) {
+    const std::size_t slash = text.find('/');
+    Shard s;
+    const bool numbers = slash != std::string::npos && read(text.substr(0, slash), s.number) && read(text.substr(slash + 1), s.of);
+    if (!numbers || s.number < 1 || s.number > s.of)
+      throw CLI::ValidationError("--shard", "is '" + text + "' (accepted: i/n with 1 ≤ i ≤ n)");
+    shard = s;
+  };
+  app.add_option_function<std::string>("--shard", take, "i/n: every n-th, from the i-th on");
+}
+
 int run(CLI::App& app, int argc, char** argv, const std::function<int()>& program) {
   const std::string name = std::filesystem::path(argc > 0 ? argv[0] : "").filename().string();
   try {

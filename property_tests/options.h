@@ -20,6 +20,13 @@ namespace delassus::options {
 /// A whole number from `least` to 2⁶³ − 1.
 [[nodiscard]] CLI::Validator whole(std::int64_t least);
 
+/// One of several runs that share the work.
+struct Shard {
+  std::uint64_t number = 1, of = 1;   ///< 1 ≤ number ≤ of
+};
+/// --shard i/n.
+void add_shard(CLI::App& app, Shard& shard);
+
 /// Reads the command line and runs; returns the exit code: that of `program`, 0 after --help, 2 for wrong usage and for
 /// any exception of `program`, both with a message on standard error.
 [[nodiscard]] int run(CLI::App& app, int argc, char** argv, const std::function<int()>& program);

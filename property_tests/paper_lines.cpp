@@ -12,6 +12,7 @@
 
 #include "generators/build.h"
 #include "generators/shrink.h"
+#include "property_tests/options.h"
 #include "property_tests/printed_algorithms.h"
 #include "reference/definition.h"
 
@@ -172,10 +173,7 @@ Exposed exposed(const Pool& pool, Printed line) {
   return out;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const bool markdown = argc > 1 && std::string(argv[1]) == "--markdown";
+int run(bool markdown) {
   const Pool any = pool(false), physical = pool(true);
   const auto problems = static_cast<int>(any.all.size());
   const char* const row = markdown ? "| %s | `%s` | `%s` | %d of %d | %s | %s |\n"
@@ -197,4 +195,14 @@ int main(int argc, char** argv) {
     std::printf("%d times a printed line was not exposed\n", survivors);
   }
   return any.corrected_wrong + physical.corrected_wrong + survivors == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The paper's lines as printed, one at a time, in rational numbers (docs/paper_notes.md).\n"
+               "Exit code 1 when a printed line is not exposed, or a corrected one is wrong."};
+  bool markdown = false;
+  app.add_flag("--markdown", markdown, "a table for a page");
+  return delassus::options::run(app, argc, argv, [&] { return run(markdown); });
 }

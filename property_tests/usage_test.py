@@ -1,0 +1,73 @@
+"""Command lines that cannot be right: exit code 2, and a message that names the option, the value and what is accepted.
+
+usage_test.py BUILD_DIR
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+build = pathlib.Path(sys.argv[1])
+delassus, tests = build / "cli/delassus", build / "property_tests"
+programs = ["accuracy_ladder", "certificate", "defects", "exact_dozen", "hard_cases", "paper_lines", "prime_field"]
+failures = []
+
+
+def run(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60)
+
+
+def refused(command, *words):
+    """Exit code 2, nothing on standard output, every word in the message."""
+    done = run(*command)
+    missing = [word for word in words if word not in done.stderr]
+    if done.returncode != 2 or done.stdout or missing:
+        failures.append(f"{' '.join(map(str, command[1:]))}: exit code {done.returncode}, without {missing}: {done.stderr}{done.stdout[:200]}")
+
+
+def printed(command, *words, code=0):
+    done = run(*command)
+    missing = [word for word in words if word not in done.stdout]
+    if done.returncode != code or missing:
+        failures.append(f"{' '.join(map(str, command[1:]))}: exit code {done.returncode}, without {missing}: {done.stdout[:400]}{done.stderr}")
+    return done.stdout
+
+
+for n in ["0", "-1", "2.5", "ring", "99999999999999999999"]:
+    refused([delassus, "check", "--family", "ring", "--n", n], "--n", f"'{n}'", "a whole number from 1")
+for x in ["abc", "-1", "inf", "nan", "1e-8kg"]:
+    refused([delassus, "check", "cassie", "--digits", "--damping", x], "--damping", f"'{x}'", "a finite number ≥ 0 [1/kg]")
+refused([delassus, "check", "--family", "huge_numbers", "--n", "308"], "10^±308 kg", "0 to 307")
+refused([delassus, "stress", "--seed", "-1"], "--seed", "'-1'", "a whole number from 0")
+refused([delassus, "stress", "--time", "5x"], "--time", "5x", "a positive number of seconds")
+refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite number > 0 [s]")
+for program in programs:
+    printed([tests / program, "--help"], "Exit code 1", "--help")
+    refused([tests / program, "--nosuch"], "--nosuch", "--help")
+refused([tests / "certificate", "--count", "abc"], "--count", "'abc'", "a whole number from 1")
+refused([tests / "certificate", "--shard", "3/2"], "--shard", "'3/2'", "i/n with 1 ≤ i ≤ n")
+refused([tests / "certificate", "--divide", "0"], "--divide", "'0'", "a finite number > 0")
+refused([tests / "hard_cases", "--family", "nosuch"], "nosuch", "stiffest")
+refused([tests / "defects", "nosuch"], "nosuch", "one_part_in_1e10")
+
+with tempfile.TemporaryDirectory() as folder:
+    vector = pathlib.Path(folder) / "vector.json"
+    for text, words in {"[1, 2, NaN, 4]": ["entry 2", "'NaN'"], "[1, 2": ["entry 1", "ends too early"],
+                        "[1, null]": ["entries"], "{}": ["object"]}.items():
+        vector.write_text(text)
+        refused([delassus, "apply", "swimmer:2", "--op", "lcaba", "--solve", "--input", vector], str(vector), "finite numbers", *words)
+    found = json.loads(printed([delassus, "stress", "--seed", "1", "--count", "2", "--json", "--folder", folder]))
+    if found["problems"] != 2 or found["failures"]:
+        failures.append(f"stress --json: {found}")
+    found = json.loads(printed([delassus, "stress", "--seed", "1", "--count", "4", "--json", "--folder", folder, "--defect", "one_part_in_1e10"], code=1))
+    if not pathlib.Path(found["failures"][0]["file"]).is_file():
+        failures.append("stress --json --defect: no file of the failure")
+
+printed([delassus, "check", "cassie", "--digits", "--damping", "1e-12"], "WARNING: in double lcaba refuses", "lost_pivot")
+if "WARNING" in printed([delassus, "check", "cassie", "--digits", "--damping", "1e-4"]):
+    failures.append("check --digits warns of a problem that lcaba solves")
+printed([delassus, "list", "effects"], "gravity", "armature")
+
+print("\n".join(failures) or "every command line is refused with its reason")
+sys.exit(1 if failures else 0)
