@@ -32,7 +32,7 @@ FILES = {
     "elimination.cpp": "plans lcaba aba_sweep", "elimination.h": "plans lcaba aba_sweep lcaba_refined",
     "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
     "factor.cpp": "kernels lcaba aba_sweep", "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
-    "columns.h": "lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
+    "columns.h": "Columns lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
     "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
     "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined", "lcaba_refined.cpp": "lcaba_refined",
     "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "cg.cpp": "krylov cg cg_preconditioned",
