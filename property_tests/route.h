@@ -9,7 +9,7 @@ namespace delassus::laws {
 /// A status other than ok where an answer was promised.
 struct Broken : std::runtime_error {
   Broken(const char* phase, const Report& r)
-      : std::runtime_error(std::string(phase) + ": " + std::string(name(r.status)) + " at " + std::to_string(r.where)),
+      : std::runtime_error(std::string(phase) + ": " + std::string(name(r.status)) + (r.where < 0 ? "" : " at " + std::to_string(r.where))),
         status(r.status) {}
   Status status;
 };
