@@ -7,6 +7,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/list_laws.h"
 #include "cli/effects.h"
 #include "generators/families.h"
 #include "property_tests/defects.h"
@@ -40,12 +41,6 @@ json families_json() {
   return out;
 }
 
-json laws_json() {
-  json out = json::array();
-  for (const laws::LawRow& l : laws::laws())
-    out.push_back({{"name", l.name}, {"summary", l.identity}, {"bound", l.bound}});
-  return out;
-}
 
 /// Sizes and constraints of a scene in words, or what is wrong with its file.
 json scene_row(const std::string& name) {
@@ -117,9 +112,11 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
     const json rows = t.rows();
     if (as_markdown) {
       print_markdown(t.name, rows);
+      if (t.rows == laws_json) print_applies_markdown(rows);
     } else if (!as_json) {
       std::printf("%s%s\n", t.name, wanted.empty() ? ":" : "");
       print_table(rows);
+      if (t.rows == laws_json) print_applies(rows);
     } else if (!wanted.empty()) {
       all = rows;
     } else {

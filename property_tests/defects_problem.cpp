@@ -74,6 +74,15 @@ std::vector<DefectRow> constraint_defects() {
             for (Index r = 0; root(n.s, link.body) != root(n.s, e.links[0].body) && r < e.rows; ++r)
               n.p.K[static_cast<std::size_t>(link.first + r)].setZero();
       }),
+      defect<in>("rows_beyond_six", "K = 0 in the seventh row of a constraint and those after it", [](auto n) {
+        for (const auto& e : n.s.link_constraints)
+          for (const auto& link : e.links)
+            for (Index r = 6; r < e.rows; ++r) n.p.K[static_cast<std::size_t>(link.first + r)].setZero();
+      }, "needs a constraint of seven rows"),
+      defect<in>("lone_row_sign", "−K on the second link of constraints of one row", [](auto n) {
+        for (const auto& e : n.s.link_constraints)
+          if (e.rows == 1 && e.links.size() > 1) n.p.K[static_cast<std::size_t>(e.links[1].first)] *= scalar_of<decltype(n)>(-1);
+      }),
       defect<in>("joint_rows_sign", "−𝒦", [](auto n) { for (auto& k : n.p.joint_K) k = -k; }),
       defect<in>("joint_row_on_next_column", "𝒦 on the wrong column of a joint of several degrees of freedom",
                  [](auto n) { n.joint_rows([](auto k, Index dofs) { std::rotate(k, k + 1, k + dofs); }); }),

@@ -123,7 +123,7 @@ bool damped(const Case& c) {
 template <> const MatrixX<Quad>& definition<double>(Function f, const Case& c) { return quad_definition(f, c); }
 template <> const MatrixX<Rational>& definition<Rational>(Function f, const Case& c) { return exact_definition(f, c); }
 
-MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x) {
+MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x, Data data) {
   const reference::Sensitivity& s = *sensitivity(c);
   MatrixX<Quad> bound(x.rows(), x.cols());
   for (Index k = 0; k < x.cols(); ++k) {
@@ -136,7 +136,10 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
       const MatrixX<Quad> exact = reference::product<Quad>(quad_definition(f, c), converted<Quad>(MatrixX<double>(a)));
       for (Index r = 0; r < a.size(); ++r) lambda[r] = static_cast<double>(exact(r, 0));
       b = s.solve_sensitivity(a, lambda);
-      if (op.solve_error == ErrorClass::refined) b = s.solve_refined(a, lambda);
+      if (op.solve_error == ErrorClass::refined) {
+        if (data == Data::given && c.known->data == Data::given) b.setZero();
+        b += s.solve_refined(a, lambda);
+      }
       if (op.solve_error == ErrorClass::normwise) b = s.solve_normwise(a, lambda);
       if (op.solve_error == ErrorClass::amplified) b += s.solve_amplified(a);
     }
@@ -147,23 +150,25 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
   return bound;
 }
 
-std::string_view bound_name(Function f, const OperatorRow& op) {
+std::string_view bound_name(Function f, const OperatorRow& op, Data data) {
   if (f == Function::apply) return "apply_sensitivity";
   switch (op.solve_error) {
     case ErrorClass::componentwise: return "solve_sensitivity";
     case ErrorClass::normwise: return "solve_normwise";
-    case ErrorClass::refined: return "solve_refined";
+    case ErrorClass::refined: return data == Data::given ? "solve_refined" : "solve_refined + solve_sensitivity";
     case ErrorClass::amplified: return "solve_amplified + solve_sensitivity";
   }
   return "solve_sensitivity";
 }
 
-const Case& variant(const Case& c, const std::string& name, const std::function<Variant<double>(const Case&)>& make) {
+const Case& variant(const Case& c, const std::string& name, const std::function<Variant<double>(const Case&)>& make,
+                    Data data) {
   auto& all = c.known->variants;
   auto at = all.find(name);
   if (at == all.end()) {
     Variant<double> v = make(c);
     at = all.emplace(name, make_case(std::move(v.problem), std::move(v.damping), c.label + ", " + name, c.seed)).first;
+    at->second.known->data = data;
   }
   return at->second;
 }

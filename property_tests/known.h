@@ -26,7 +26,11 @@ template <class To, class From> [[nodiscard]] MatrixX<To> converted(const Matrix
   return y;
 }
 
+/// The numbers an operator is given: those of the case, or their rounding.
+enum class Data : std::uint8_t { given, rounded };
+
 struct Known {
+  Data data = Data::given;   ///< rounded: a variant whose numbers are not exactly those it stands for
   bool tried = false;
   std::optional<reference::Sensitivity> sensitivity;
   std::string no_sensitivity;
@@ -56,13 +60,14 @@ struct Known {
 /// A and A⁻¹ by the definition in Quad or Rational. Shapes m×m. @throws std::runtime_error when singular.
 template <class T> [[nodiscard]] const MatrixX<Wide<T>>& definition(Function f, const Case& c);
 /// Bound on the error of f(x) by an operator of this row, per unit roundoff. Shapes m×k.
-[[nodiscard]] MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x);
+[[nodiscard]] MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x,
+                                        Data data = Data::given);
 /// The name of that bound.
-[[nodiscard]] std::string_view bound_name(Function f, const OperatorRow& op);
+[[nodiscard]] std::string_view bound_name(Function f, const OperatorRow& op, Data data = Data::given);
 
-/// Another case that follows from this one; made once.
+/// Another case that follows from this one; made once. `data`: whether its numbers are exact.
 [[nodiscard]] const Case& variant(const Case& c, const std::string& name,
-                                  const std::function<Variant<double>(const Case&)>& make);
+                                  const std::function<Variant<double>(const Case&)>& make, Data data = Data::rounded);
 /// Answer of a reference for the vectors `x` (the same ones at every call with this name); nullopt: it does not trust
 /// itself here.
 [[nodiscard]] const std::optional<MatrixX<Quad>>& answer(Function f, std::string_view reference, const Case& c,

@@ -18,6 +18,8 @@ using X = Rational;
 
 constexpr auto can_apply = why_not_function<double, apply>;
 constexpr auto can_solve = why_not_function<double, solve>;
+constexpr auto has_apply = why_not_called<apply>;
+constexpr auto has_solve = why_not_called<solve>;
 constexpr auto can_apply_exactly = why_not_function<X, apply>;
 constexpr auto can_solve_exactly = why_not_function<X, solve>;
 
@@ -32,16 +34,17 @@ bool any_variant(const Case& c, const std::function<bool(const Case&)>& is) {
 /// An operator may give up, and say so (eps: unit roundoff of its factor's arithmetic):
 ///   an iteration      where κ(A) is beyond 1/√eps, or products A f are 30 m times less accurate than by the explicit matrix
 ///   a factorisation   where κ(A), that factor, or R (J M⁻¹Jᵀ) where it needs R, is beyond 2⁻¹³/eps, or where M may be
-///                     singular within 30 eps; refinement on it too
+///                     singular within 30 eps; refinement on it too. Where it decides ranks, it may find A singular there
 const char* excuse(const LawRow& law, const Broken& broken, const OperatorRow& op, const Case& c) {
   if (law.name.starts_with("exact ")) return nullptr;
   const double eps = law.name.ends_with("in float") ? std::max<double>(op.factor_eps, unit_roundoff<float>) : op.factor_eps;
   const bool iteration = broken.status == Status::not_converged;
+  const bool factor = broken.status == Status::lost_pivot || (op.decides_rank && broken.status == Status::inconsistent);
   if (iteration && any_variant(c, [&](const Case& v) {
         return condition(v) > std::sqrt(0.5 / eps) || product_condition(v) > pass_below * static_cast<double>(v.rows());
       }))
     return "not_converged, and says so, where κ(A) > 1/√eps or A f itself is not that accurate";
-  if ((iteration || broken.status == Status::lost_pivot) && any_variant(c, [&](const Case& v) {
+  if ((iteration || factor) && any_variant(c, [&](const Case& v) {
         const double stiff = op.zero_damping ? 0 : stiffness(v);
         return std::max({condition(v), product_condition(v), stiff}) > 0x1p-13 / eps ||
                static_cast<double>(condition_of_M(v)) > 1 / (pass_below * eps);
@@ -80,18 +83,18 @@ std::vector<LawRow> first_laws() {
        armature<double>},
       {"apply multi-column", "A [x y …] = [A x, A y, …]", of_apply, can_apply, multi_column<apply>},
       {"solve multi-column", "A⁻¹ [x y …] = [A⁻¹ x, A⁻¹ y, …]", of_solve, can_solve, multi_column<solve>},
-      {"apply after update twice", "second update = fresh operator", "identical bits", can_apply, update_twice<apply>},
-      {"solve after update twice", "second update = fresh operator", "identical bits", can_solve, update_twice<solve>},
+      {"apply after update twice", "second update = fresh operator", "identical bits", has_apply, update_twice<apply>},
+      {"solve after update twice", "second update = fresh operator", "identical bits", has_solve, update_twice<solve>},
       {"apply after update_damping", "update_damping = update", of_apply, can_apply, damping_update<apply>},
       {"solve after update_damping", "update_damping = update", of_solve, can_solve, damping_update<solve>},
-      {"solve in few steps", "as many steps as it takes: the same; one fewer: says so", of_solve, can_solve, few_steps},
+      {"solve in few steps", "as many steps as it takes: the same; one fewer: says so", of_solve, has_solve, few_steps},
       {"no allocation", "allocations after analyze = 0", "zero", why_not_allocation, no_allocation},
-      {"apply with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_apply, poisoned_workspace<apply>},
-      {"solve with poisoned workspace", "NaN-filled = zero workspace", "identical bits", can_solve, poisoned_workspace<solve>},
+      {"apply with poisoned workspace", "NaN-filled = zero workspace", "identical bits", has_apply, poisoned_workspace<apply>},
+      {"solve with poisoned workspace", "NaN-filled = zero workspace", "identical bits", has_solve, poisoned_workspace<solve>},
       {"empty sizes", "no rows or no columns: ok", "zero", why_not_zero_columns, empty_sizes},
       {"zero damping", "R⁻¹ = 0: solved, or refused by row", of_solve, why_not_zero_damping, zero_damping},
-      {"apply keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", can_apply, nan_stays<apply>},
-      {"solve keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", can_solve, nan_stays<solve>},
+      {"apply keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", has_apply, nan_stays<apply>},
+      {"solve keeps NaN", "NaN in ⇒ NaN out and a status", "NaN", has_solve, nan_stays<solve>},
       // Exact twins: the same in rational numbers, by equality.
       {"exact apply symmetric", "xᵀ(A y) = (A x)ᵀ y", "equality", can_apply_exactly, symmetric<X, apply>},
       {"exact solve symmetric", "xᵀ(A⁻¹ y) = (A⁻¹ x)ᵀ y", "equality", can_solve_exactly, symmetric<X, solve>},

@@ -49,10 +49,17 @@ template <class T> MatrixX<T> probes(Index rows, std::uint64_t seed) {
 
 }  // namespace
 
+template <Function F> const char* why_not_called(const OperatorRow& op, const Case& c) {
+  if (c.rows() == 0) return "no rows";
+  if (F == Function::solve) return op.solves ? nullptr : "has no solve";
+  return op.applies ? nullptr : "has no apply";
+}
+template const char* why_not_called<Function::apply>(const OperatorRow&, const Case&);
+template const char* why_not_called<Function::solve>(const OperatorRow&, const Case&);
+
 template <class T> const char* why_not(Function f, const OperatorRow& op, const Case& c) {
   const bool solve = f == Function::solve;
-  if (c.rows() == 0) return "no rows";
-  if (solve ? !op.solves : !op.applies) return solve ? "has no solve" : "has no apply";
+  if (const char* reason = solve ? why_not_called<Function::solve>(op, c) : why_not_called<Function::apply>(op, c)) return reason;
   if constexpr (ScalarTraits<T>::exact) {
     if (!c.exact) return "too large for exact arithmetic";
     if (!op.terminates_exactly || !std::get<Maker<T>>(op.makers)) return "does not end in exact arithmetic";
@@ -166,7 +173,7 @@ template <class T> Verdict resolvent(const OperatorRow& op, const Case& c) {
     else {
       const Case& other = variant(c, "other damping", [](const Case& of) {
         return Variant<double>{of.problem, other_damping(*of.problem.structure, of.damping)};
-      });
+      }, Data::given);
       const MatrixX<Quad> of_force = error_bound(Function::solve, op, other, a);
       const MatrixX<Quad> of_moved = times<Quad>(magnitude(change), of_force) + magnitude(converted<Quad>(moved));
       return error_bound(Function::solve, op, c, moved) + of_force +

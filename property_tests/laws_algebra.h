@@ -13,6 +13,9 @@ template <class T, Function F> [[nodiscard]] const char* why_not_function(const 
   return why_not<T>(F, op, c);
 }
 
+/// The same of a law that needs no bound and no reference: the operator has the function, whatever it comes to.
+template <Function F> [[nodiscard]] const char* why_not_called(const OperatorRow& op, const Case& c);
+
 /// xᵀ(F y) = (F x)ᵀ y.
 template <class T, Function F> [[nodiscard]] Verdict symmetric(const OperatorRow& op, const Case& c);
 /// apply: 0 ≤ xᵀ A x. solve: 0 ≤ xᵀ A⁻¹ x, and ≤ xᵀ R x where R⁻¹ > 0, here as (A⁻¹x)ᵀ R⁻¹ (A⁻¹x) ≤ xᵀ A⁻¹ x.

@@ -49,7 +49,7 @@ Verdict ordered(Function f, const OperatorRow& op, const Case& c, const Variant<
 const Case& more_damped(const Case& c) {
   return variant(c, "other damping", [](const Case& of) {
     return Variant<double>{of.problem, other_damping(*of.problem.structure, of.damping)};
-  });
+  }, Data::given);
 }
 
 template <class T, Function F> const char* why_not_damped(const OperatorRow& op, const Case& c) {
@@ -63,7 +63,7 @@ template <class T, Function F> Verdict ordered_by_damping(const OperatorRow& op,
 }
 
 const Case& stiff(const Case& c) {
-  return second_case(c, "stiffened", [&](const auto& p, const auto& d) { return stiffened<double>(p, d, c.seed); });
+  return second_case(c, "stiffened", [&](const auto& p, const auto& d) { return stiffened<double>(p, d, c.seed); }, Data::given);
 }
 
 template <class T, Function F> const char* why_not_stiff(const OperatorRow& op, const Case& c) {

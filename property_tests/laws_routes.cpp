@@ -25,7 +25,7 @@ Verdict same_answer(Function f, const OperatorRow& op, const Case& c, const Vari
   longer.topRows(c.rows()) = x;
   const Dense<T> first = Route<T>(op, p, d)(f, x);
   const Dense<T> second = Route<T>(op, v.problem, v.damping)(f, longer).topRows(c.rows());
-  return agree<T>(first, second, bound_name(f, op), [&]() -> MatrixX<Quad> {
+  return agree<T>(first, second, bound_name(f, op, other.known->data), [&]() -> MatrixX<Quad> {
     if constexpr (ScalarTraits<T>::exact) return {};
     else return error_bound(f, op, c, x) + MatrixX<Quad>(error_bound(f, op, other, longer).topRows(c.rows()));
   });

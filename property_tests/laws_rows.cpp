@@ -1,4 +1,4 @@
-// Laws about the rows alone: fewer, in another order, with idle links, parallel, in other units.
+// Laws about the rows alone: fewer, in another order, split, stacked, with idle links, parallel, in other units.
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"
 #include "property_tests/variants_rows.h"
@@ -9,7 +9,7 @@ namespace {
 constexpr Function apply = Function::apply, solve = Function::solve;
 
 const Case& fewer(const Case& c) {
-  return second_case(c, "one constraint left out", [&](const auto& p, const auto& d) { return one_left_out<double>(p, d, c.seed); });
+  return second_case(c, "one constraint left out", [&](const auto& p, const auto& d) { return one_left_out<double>(p, d, c.seed); }, Data::given);
 }
 
 /// The rows of the case that `second` does not have.
@@ -66,6 +66,26 @@ template <class T, Function F> Verdict idle_links(const OperatorRow& op, const C
   return same_answer<T>(F, op, c, with_idle_links(p, d), c, true);
 }
 
+template <class T, Function F> const char* why_not_row_by_row(const OperatorRow& op, const Case& c) {
+  if (const char* reason = why_not<T>(F, op, c)) return reason;
+  return can_split_rows(c.problem, c.damping) ? nullptr : "has no constraint of several rows without a block of R⁻¹";
+}
+
+template <class T, Function F> Verdict row_by_row(const OperatorRow& op, const Case& c) {
+  const auto [p, d] = numbers<T>(c);
+  return same_answer<T>(F, op, c, rows_split(p, d), c, true);
+}
+
+template <class T, Function F> const char* why_not_stacked(const OperatorRow& op, const Case& c) {
+  if (const char* reason = why_not<T>(F, op, c)) return reason;
+  return can_stack(c.problem, c.damping) ? nullptr : "has no two constraints on bodies or on one joint";
+}
+
+template <class T, Function F> Verdict stacked(const OperatorRow& op, const Case& c) {
+  const auto [p, d] = numbers<T>(c);
+  return same_answer<T>(F, op, c, rows_stacked(p, d, c.seed), c, true);
+}
+
 const Case& twice(const Case& c) {
   return second_case(c, "one constraint twice", [&](const auto& p, const auto& d) { return doubled<double>(p, d, c.seed); });
 }
@@ -95,16 +115,25 @@ template <class T, Function F> Verdict parallel(const OperatorRow& op, const Cas
   }));
 }
 
+template <class T, Function F> const char* why_not_units(const OperatorRow& op, const Case& c) {
+  if constexpr (ScalarTraits<T>::exact) return why_not<T>(F, op, c);
+  else return why_not_called<F>(op, c);
+}
+
 /// A' = row²/mass A, whatever the unit of length: bit for bit in double.
 template <class T, Function F> Verdict units_changed(const OperatorRow& op, const Case& c) {
   const auto [p, d] = numbers<T>(c);
   const Units<T> u = other_units<T>();
   const Second<T> second = in_units(p, d, u);
   const T scale = F == apply ? u.row * u.row / u.mass : u.mass / (u.row * u.row);
-  const MatrixX<T> x = vectors<T>(c.rows(), 2, c.seed), expected = Route<T>(op, p, d).narrow(F, x) * scale;
-  const MatrixX<T> got = Route<T>(op, second.numbers.problem, second.numbers.damping).narrow(F, x);
-  if constexpr (ScalarTraits<T>::exact) return judge_equal<T>(got, expected);
-  else return judge_bits(got, expected);
+  const MatrixX<T> x = vectors<T>(c.rows(), 2, c.seed);
+  const Route<T> first(op, p, d), other(op, second.numbers.problem, second.numbers.damping);
+  if constexpr (ScalarTraits<T>::exact) return judge_equal<T>(other.narrow(F, x), first.narrow(F, x) * scale);
+  else {
+    Ran<T> expected = first.run(F, x);
+    expected.y *= scale;
+    return judge_runs(other.run(F, x), expected);
+  }
 }
 
 }  // namespace
@@ -116,11 +145,15 @@ std::vector<LawRow> row_laws() {
       DELASSUS_TWINS("solve of fewer rows", "V of some constraints = Schur complement of V", of_solve, solve, why_not_fewer, fewer_rows),
       DELASSUS_TWINS("apply reordered", "A x = A x with constraints in another order", of_apply, apply, why_not_function, rows_reordered),
       DELASSUS_TWINS("solve reordered", "V x = V x with constraints in another order", of_solve, solve, why_not_function, rows_reordered),
+      DELASSUS_TWINS("apply with rows split", "a constraint of k rows = k constraints of one", of_apply, apply, why_not_row_by_row, row_by_row),
+      DELASSUS_TWINS("solve with rows split", "a constraint of k rows = k constraints of one", of_solve, solve, why_not_row_by_row, row_by_row),
+      DELASSUS_TWINS("apply with rows stacked", "constraints on the same bodies = one of all their rows", of_apply, apply, why_not_stacked, stacked),
+      DELASSUS_TWINS("solve with rows stacked", "constraints on the same bodies = one of all their rows", of_solve, solve, why_not_stacked, stacked),
       DELASSUS_TWINS("apply with idle links", "a body added with K = 0 changes nothing", of_apply, apply, why_not_idle, idle_links),
       DELASSUS_TWINS("solve with idle links", "a body added with K = 0 changes nothing", of_solve, solve, why_not_idle, idle_links),
       DELASSUS_TWINS("parallel constraints", "R₁, R₂ on the same rows: f₁ + f₂ = f of R₁ + R₂, f₁ : f₂ = R₁ : R₂", of_solve, solve, why_not_parallel, parallel),
-      DELASSUS_TWINS("apply in other units", "lengths, masses, rows scaled: A' = row²/mass A", bits, apply, why_not_function, units_changed),
-      DELASSUS_TWINS("solve in other units", "lengths, masses, rows scaled: V' = mass/row² V", bits, solve, why_not_function, units_changed),
+      DELASSUS_TWINS("apply in other units", "lengths, masses, rows scaled: A' = row²/mass A", bits, apply, why_not_units, units_changed),
+      DELASSUS_TWINS("solve in other units", "lengths, masses, rows scaled: V' = mass/row² V", bits, solve, why_not_units, units_changed),
   };
 }
 

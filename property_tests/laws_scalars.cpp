@@ -15,7 +15,7 @@ constexpr Function apply = Function::apply, solve = Function::solve;
 /// 30 eps(float) · bound reaches the largest entry of the answer.
 bool float_promises_nothing(Function f, const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
-  const MatrixX<Quad> y = times<Quad>(definition<double>(f, c), converted<Quad>(x)), bound = error_bound(f, op, c, x);
+  const MatrixX<Quad> y = times<Quad>(definition<double>(f, c), converted<Quad>(x)), bound = error_bound(f, op, c, x, Data::rounded);
   Quad reach(0), largest(0);
   for (Index r = 0; r < y.rows(); ++r) {
     reach = std::max(reach, Quad(Quad(pass_below * unit_roundoff<float>) * bound(r, 0)));
@@ -48,7 +48,7 @@ template <Function F> Verdict in_float(const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 2, c.seed);
   const Route<float> route(op, c.problem.cast<float>(), c.damping.cast<float>());
   const MatrixX<Quad> got = route(F, converted<float>(x)), expected = times<Quad>(definition<double>(F, c), converted<Quad>(x));
-  return judge(got - expected, error_bound(F, op, c, x), unit_roundoff<float>, bound_name(F, op));
+  return judge(got - expected, error_bound(F, op, c, x, Data::rounded), unit_roundoff<float>, bound_name(F, op, Data::rounded));
 }
 
 template <Function F> const char* why_not_quad(const OperatorRow& op, const Case& c) {
@@ -62,7 +62,7 @@ template <Function F> Verdict in_quad(const OperatorRow& op, const Case& c) {
   const MatrixX<Quad> got = Route<Quad>(op, c.problem.cast<Quad>(), c.damping.cast<Quad>())(F, x);
   const MatrixX<Rational> expected = times<Rational>(definition<Rational>(F, c), converted<Rational>(x));
   const MatrixX<Rational> error = converted<Rational>(got) - expected;
-  return judge(converted<Quad>(error), error_bound(F, op, c, converted<double>(x)), unit_roundoff<Quad>, bound_name(F, op));
+  return judge(converted<Quad>(error), error_bound(F, op, c, converted<double>(x), Data::rounded), unit_roundoff<Quad>, bound_name(F, op, Data::rounded));
 }
 
 Quad maximum(const MatrixX<Quad>& x) { return x.size() == 0 ? Quad(0) : Quad(x.maxCoeff()); }
@@ -109,21 +109,17 @@ template <Function F> Verdict on_two_threads(const OperatorRow& op, const Case& 
   constexpr int times_over = 8;
   const Route<double> route(op, c.problem, c.damping);
   const MatrixX<double> x[2] = {vectors<double>(c.rows(), 2, c.seed), vectors<double>(c.rows(), 1, c.seed + 1)};
-  const MatrixX<double> alone[2] = {route.narrow(F, x[0]), route.narrow(F, x[1])};
+  const Ran<double> alone[2] = {route.run(F, x[0]), route.run(F, x[1])};
   Verdict v[2];
   std::latch both(2);
   const auto work = [&](int k) {
     both.arrive_and_wait();
-    try {
-      for (int repeat = 0; repeat < times_over; ++repeat) v[k] = worst(v[k], judge_bits(route.narrow(F, x[k]), alone[k]));
-    } catch (const Broken& broken) {
-      v[k] = failure(broken.what());
-    }
+    for (int repeat = 0; repeat < times_over; ++repeat) v[k] = worst(v[k], judge_runs(route.run(F, x[k]), alone[k]));
   };
   std::thread other(work, 1);
   work(0);
   other.join();
-  const Verdict fresh = judge_bits(Route<double>(op, c.problem, c.damping).narrow(F, x[0]), alone[0]);
+  const Verdict fresh = judge_runs(Route<double>(op, c.problem, c.damping).run(F, x[0]), alone[0]);
   return worst(fresh, worst(v[0], v[1]));
 }
 
@@ -139,9 +135,9 @@ std::vector<LawRow> scalar_laws() {
       {"solve in Quad", "A⁻¹ x in Quad = A⁻¹ x in rational numbers", solve_q, why_not_quad<solve>, in_quad<solve>},
       {"refuses as in exact arithmetic", "hard rows: refused in double ⇔ in rational numbers, or a residual of rounding", of_apply,
        why_not_refusal, same_refusal},
-      {"apply on two threads", "concurrent = alone = fresh operator", "identical bits", why_not_function<double, apply>,
+      {"apply on two threads", "concurrent = alone = fresh operator", "identical bits", why_not_called<apply>,
        on_two_threads<apply>},
-      {"solve on two threads", "concurrent = alone = fresh operator", "identical bits", why_not_function<double, solve>,
+      {"solve on two threads", "concurrent = alone = fresh operator", "identical bits", why_not_called<solve>,
        on_two_threads<solve>},
   };
 }

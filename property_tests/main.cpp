@@ -1,6 +1,8 @@
 // The loop: for every operator, on every family, every law that applies.
 //
 //   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--verbose] [--times]
+//   property_tests --table ratios|promises …       a table of docs/verification.md in place of the summary; promises: of what
+//                                                   would be checked, without checking it
 //
 // Prints the worst ratio per law and operator and why anything was skipped. Exit code 0: every law holds; 1: not.
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <string>
 
 #include "property_tests/allocations.h"
+#include "property_tests/law_tables.h"
 #include "property_tests/summary.h"
 
 namespace {
@@ -19,11 +22,13 @@ using namespace delassus;
 using namespace delassus::laws;
 
 struct Options {
-  std::string op, family, law;
+  std::string op, family, law, table;
   std::uint64_t seeds = 5;
   int shard = 0, shards = 1;
   bool verbose = false, times = false;
 };
+
+constexpr const char* accepted = "--op --family --law --seeds --shard --table --verbose --times";
 
 void read_shard(const std::string& text, Options& o) {
   const std::size_t slash = text.find('/');
@@ -41,30 +46,43 @@ Options read(int argc, char** argv) {
       (key == "--times" ? o.times : o.verbose) = true;
       continue;
     }
-    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", "--op --family --law --seeds --shard --verbose --times");
+    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", accepted);
     const std::string value = argv[++k];
     if (key == "--op") o.op = find_operator(value).name;
     else if (key == "--family") o.family = generators::find_family(value).name;
     else if (key == "--law") o.law = find_law(value).name;
     else if (key == "--seeds") o.seeds = std::stoull(value);
     else if (key == "--shard") read_shard(value, o);
-    else throw ModelError("command line", key, "is unknown", "--op --family --law --seeds --shard --verbose --times");
+    else if (key == "--table" && (value == "ratios" || value == "promises")) o.table = value;
+    else throw ModelError("command line", key, "is unknown", accepted);
   }
   return o;
 }
 
-void check_case(const Options& o, const Case& c, Summary& summary) {
+/// What a run is reduced to.
+struct Tables {
+  Summary summary;
+  Ratios ratios;
+  Promises promises;
+};
+
+void check_case(const Options& o, std::string_view family, const Case& c, Tables& to) {
   for (const OperatorRow& op : operators())
     for (const LawRow& law : laws::laws()) {
       if ((!o.op.empty() && op.name != o.op) || (!o.law.empty() && law.name != o.law)) continue;
+      if (o.table == "promises") {
+        to.promises.add(family, op, why_not(law, op, c));
+        continue;
+      }
       const Outcome outcome = check(law, op, c);
-      summary.add(outcome);
+      to.summary.add(outcome);
+      to.ratios.add(outcome);
       if (o.verbose || outcome.failed()) print(std::cout, outcome);
     }
 }
 
 int run(const Options& o) {
-  Summary summary;
+  Tables to;
   int cell = 0;
   for (const generators::FamilyRow& family : generators::families()) {
     if (!o.family.empty() && family.name != o.family) continue;
@@ -76,12 +94,14 @@ int run(const Options& o) {
         if (cell++ % o.shards == o.shard) {
           const std::clock_t start = std::clock();
           const Case c = make_case(family.name, n, seed);
-          check_case(o, c, summary);
+          check_case(o, family.name, c, to);
           if (o.times) std::cout << static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC << " s  " << c.label << '\n';
         }
   }
-  summary.print(std::cout);
-  return summary.failed() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  if (o.table == "promises") to.promises.print(std::cout);
+  else if (o.table == "ratios") to.ratios.print(std::cout);
+  else to.summary.print(std::cout);
+  return to.summary.failed() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace

@@ -14,6 +14,12 @@ struct Broken : std::runtime_error {
   Status status;
 };
 
+/// What an operator came to, whatever that is: an answer, or a refusal.
+template <class T> struct Ran {
+  Report updated, called;
+  MatrixX<T> y;
+};
+
 template <class T> class Route {
  public:
   Route(const OperatorRow& row, const Problem<T>& problem, const Damping<T>& damping) : op_(row.make<T>()) {
@@ -26,15 +32,24 @@ template <class T> class Route {
     return narrow(f, x, w);
   }
   [[nodiscard]] MatrixX<T> narrow(Function f, const MatrixX<T>& x, Workspace<T>& w) const {
-    MatrixX<T> y = MatrixX<T>::Zero(x.rows(), x.cols());
     if (f == Function::solve && !updated_.ok()) throw Broken("update", updated_);
-    const Report r = f == Function::apply ? op_->apply(x, y, w) : op_->solve(x, y, w);
-    if (!r.ok()) throw Broken(f == Function::apply ? "apply" : "solve", r);
-    return y;
+    Ran<T> r = run(f, x, w);
+    if (!r.called.ok()) throw Broken(f == Function::apply ? "apply" : "solve", r.called);
+    return std::move(r.y);
   }
   /// The same in the scalar errors are computed in.
   [[nodiscard]] MatrixX<Wide<T>> operator()(Function f, const MatrixX<T>& x) const {
     return converted<Wide<T>>(narrow(f, x));
+  }
+  /// The same, refusals included.
+  [[nodiscard]] Ran<T> run(Function f, const MatrixX<T>& x) const {
+    Workspace<T> w(op_->workspace(x.cols()));
+    return run(f, x, w);
+  }
+  [[nodiscard]] Ran<T> run(Function f, const MatrixX<T>& x, Workspace<T>& w) const {
+    MatrixX<T> y = MatrixX<T>::Zero(x.rows(), x.cols());
+    const Report r = f == Function::apply ? op_->apply(x, y, w) : op_->solve(x, y, w);
+    return {updated_, r, std::move(y)};
   }
   /// What update said last.
   Report& updated() { return updated_; }
@@ -44,6 +59,19 @@ template <class T> class Route {
   std::unique_ptr<Operator<T>> op_;
   Report updated_;
 };
+
+/// The same outcome: the same statuses, places and numbers of steps, and the same bits.
+[[nodiscard]] inline Verdict judge_runs(const Ran<double>& x, const Ran<double>& y) {
+  const auto same = [](const Report& a, const Report& b) {
+    return a.status == b.status && a.where == b.where && a.iterations == b.iterations;
+  };
+  const auto words = [](const Ran<double>& r) {
+    return std::string(name(r.updated.status)) + ", " + std::string(name(r.called.status)) + " at " +
+           std::to_string(r.called.where) + " after " + std::to_string(r.called.iterations) + " steps";
+  };
+  if (same(x.updated, y.updated) && same(x.called, y.called)) return judge_bits(x.y, y.y);
+  return failure(words(x) + "; " + words(y), "identical bits");
+}
 
 /// Entries k/8, |k| ≤ 8, never zero: sums and products with small integers are exact. Shapes m×k.
 template <class T> [[nodiscard]] MatrixX<T> vectors(Index rows, Index columns, std::uint64_t seed) {

@@ -34,8 +34,9 @@ template <class T> [[nodiscard]] MatrixX<T> restricted(const MatrixX<T>& x, cons
 }
 
 /// The case of a second description, made once.
-template <class Make> [[nodiscard]] const Case& second_case(const Case& c, const char* name, Make make) {
-  return variant(c, name, [&](const Case& of) { return make(of.problem, of.damping).numbers; });
+template <class Make>
+[[nodiscard]] const Case& second_case(const Case& c, const char* name, Make make, Data data = Data::rounded) {
+  return variant(c, name, [&](const Case& of) { return make(of.problem, of.damping).numbers; }, data);
 }
 
 /// Reason why F of the case and of the other one cannot be compared.
@@ -56,7 +57,7 @@ template <class T>
   const MatrixX<T> there = spread<T>(x, second.from);
   const Dense<T> first = restricted<Wide<T>>(Route<T>(op, p, d)(f, x), second.from);
   const Dense<T> answer = gathered<Wide<T>>(Route<T>(op, second.numbers.problem, second.numbers.damping)(f, there), second.from, c.rows());
-  return agree<T>(first, answer, bound_name(f, op), [&]() -> MatrixX<Quad> {
+  return agree<T>(first, answer, bound_name(f, op, same_matrices ? Data::given : other.known->data), [&]() -> MatrixX<Quad> {
     if constexpr (ScalarTraits<T>::exact) return {};
     else {
       const MatrixX<Quad> own = error_bound(f, op, c, x);

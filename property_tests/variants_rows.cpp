@@ -1,5 +1,6 @@
 #include "property_tests/variants_rows.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "algorithms/scalars.h"
@@ -15,6 +16,57 @@ template <class T> void scale(typename Parts<T>::Constraint& c, const T& factor)
 
 template <class T> typename Parts<T>::Constraint& chosen(Parts<T>& parts, std::uint64_t seed) {
   return parts.constraints[seed % parts.constraints.size()];
+}
+
+template <class T> bool splits(const typename Parts<T>::Constraint& c) { return c.rows() > 1 && c.blocks.empty(); }
+
+/// Row r of a constraint whose R⁻¹ has no block.
+template <class T> typename Parts<T>::Constraint single_row(const typename Parts<T>::Constraint& c, Index r) {
+  typename Parts<T>::Constraint one;
+  one.from = {c.from[static_cast<std::size_t>(r)]};
+  one.diagonal = {c.diagonal[static_cast<std::size_t>(r)]};
+  for (const auto& l : c.links) one.links.push_back({l.body, l.K.row(r)});
+  one.joint = c.joint;
+  if (c.joint != ground) one.joint_K = c.joint_K.row(r);
+  return one;
+}
+
+template <class T> std::vector<Index> bodies_of(const typename Parts<T>::Constraint& c) {
+  std::vector<Index> bodies;
+  for (const auto& l : c.links) bodies.push_back(l.body);
+  std::sort(bodies.begin(), bodies.end());
+  return bodies;
+}
+
+template <class T> bool alike(const typename Parts<T>::Constraint& a, const typename Parts<T>::Constraint& b) {
+  return a.joint == b.joint && bodies_of<T>(a) == bodies_of<T>(b);
+}
+
+/// Constraint j as rows below those of constraint i < j.
+template <class T> void stack(Parts<T>& parts, std::size_t i, std::size_t j) {
+  auto& c = parts.constraints[i];
+  const auto below = std::move(parts.constraints[j]);
+  parts.constraints.erase(parts.constraints.begin() + static_cast<std::ptrdiff_t>(j));
+  const Index above = c.rows(), rows = above + below.rows();
+  for (auto& l : c.links) {
+    MatrixX<T> K = MatrixX<T>::Constant(rows, 6, T(0));
+    K.topRows(above) = l.K;
+    l.K = std::move(K);
+  }
+  for (const auto& l : below.links) {
+    MatrixX<T> K = MatrixX<T>::Constant(rows, 6, T(0));
+    K.bottomRows(below.rows()) = l.K;
+    parts.add_link(c, l.body, K);
+  }
+  MatrixX<T> joint_K(rows, c.joint_K.cols());
+  if (c.joint != ground) joint_K << c.joint_K, below.joint_K;
+  c.joint_K = std::move(joint_K);
+  c.from.insert(c.from.end(), below.from.begin(), below.from.end());
+  c.diagonal.insert(c.diagonal.end(), below.diagonal.begin(), below.diagonal.end());
+  for (auto block : below.blocks) {
+    block.row += above;
+    c.blocks.push_back(std::move(block));
+  }
 }
 
 }  // namespace
@@ -57,6 +109,44 @@ template <class T> Second<T> doubled(const Problem<T>& p, const Damping<T>& d, s
   return together(parts);
 }
 
+bool can_split_rows(const Problem<double>& p, const Damping<double>& d) {
+  const auto all = apart(p, d).constraints;
+  return std::any_of(all.begin(), all.end(), splits<double>);
+}
+
+template <class T> Second<T> rows_split(const Problem<T>& p, const Damping<T>& d) {
+  Parts<T> parts = apart(p, d);
+  const auto whole = std::exchange(parts.constraints, {});
+  for (const auto& c : whole) {
+    if (!splits<T>(c)) parts.constraints.push_back(c);
+    else for (Index r = 0; r < c.rows(); ++r) parts.constraints.push_back(single_row<T>(c, r));
+  }
+  return together(parts);
+}
+
+bool can_stack(const Problem<double>& p, const Damping<double>& d) {
+  return constraint_count(*rows_stacked(p, d, 0).numbers.problem.structure) < constraint_count(*p.structure);
+}
+
+template <class T> Second<T> rows_stacked(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed) {
+  Parts<T> parts = apart(p, d);
+  auto& all = parts.constraints;
+  const std::size_t before = all.size();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size();) {
+      if (alike<T>(all[i], all[j])) stack(parts, i, j);
+      else ++j;
+    }
+  std::vector<std::size_t> on_bodies;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!all[i].links.empty()) on_bodies.push_back(i);
+  if (all.size() == before && on_bodies.size() > 1) {
+    const std::size_t k = seed % (on_bodies.size() - 1);
+    stack(parts, on_bodies[k], on_bodies[k + 1]);
+  }
+  return together(parts);
+}
+
 template <class T> Units<T> other_units() {
   if constexpr (ScalarTraits<T>::exact) return {T(3), T(0.625), T(7)};
   else return {T(0x1p-10), T(0x1p-20), T(0x1p7)};
@@ -88,6 +178,8 @@ template <class T> Second<T> in_units(const Problem<T>& p, const Damping<T>& d, 
   template Second<T> reordered(const Problem<T>&, const Damping<T>&, std::uint64_t);     \
   template Second<T> with_idle_links(const Problem<T>&, const Damping<T>&);              \
   template Second<T> doubled(const Problem<T>&, const Damping<T>&, std::uint64_t);       \
+  template Second<T> rows_split(const Problem<T>&, const Damping<T>&);                   \
+  template Second<T> rows_stacked(const Problem<T>&, const Damping<T>&, std::uint64_t);  \
   template Units<T> other_units<T>();                                                    \
   template Second<T> in_units(const Problem<T>&, const Damping<T>&, const Units<T>&);
 DELASSUS_VARIANTS(double)

@@ -18,6 +18,16 @@ template <class T> [[nodiscard]] Second<T> with_idle_links(const Problem<T>& p, 
 /// the same `from`. Their R are a third and two thirds of the given one.
 template <class T> [[nodiscard]] Second<T> doubled(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
 
+/// There is a constraint of several rows whose R⁻¹ has no block.
+[[nodiscard]] bool can_split_rows(const Problem<double>& p, const Damping<double>& d);
+/// Every constraint of k rows whose R⁻¹ has no block as k constraints of one row. A is the same.
+template <class T> [[nodiscard]] Second<T> rows_split(const Problem<T>& p, const Damping<T>& d);
+/// There are two constraints on bodies, or on one joint.
+[[nodiscard]] bool can_stack(const Problem<double>& p, const Damping<double>& d);
+/// All constraints on the same bodies, or on the same joint, as one of all their rows; where there are none, any two on
+/// bodies, chosen by `seed`, with K = 0 where a body is in one of them only. A is the same but for its order.
+template <class T> [[nodiscard]] Second<T> rows_stacked(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
+
 /// Lengths times `length`, masses times `mass`, rows times `row`; A' = row²/mass A. Powers of two in double.
 template <class T> struct Units {
   T length, mass, row;

@@ -15,9 +15,12 @@
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
 //            solve_normwise(a, λ) = ‖A⁻¹‖ ( ‖A‖ ‖λ‖ + ‖apply_sensitivity(λ)‖ + ‖a‖ ),  ∞-norms, the same on every row.
-// refined  refinement ends when the correction is below ε of the largest force and below ε in the energy norm
-//          ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa, in which |λ_r| ≤ √R_rr ‖·‖:
-//            solve_refined(a, λ) = solve_sensitivity(a, λ) + min( max|λ|, √R_rr √(λᵀa) ),   R_rr = ∞ where R⁻¹ is singular.
+// refined  refinement of the numbers as given, with residuals in twice the digits, ends when the correction is below ε of the
+//          largest force and below ε in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa, in which |λ_r| ≤ √R_rr ‖·‖:
+//            solve_refined(a, λ) = min( max|λ|, √R_rr √(λᵀa) ) + ε solve_sensitivity(a, λ).
+//          Where R⁻¹ is singular the size δ of a correction is the only sign of the error. One correction is enough when
+//          δ² ≤ ε, and its own error is δ · ε solve_sensitivity, hence
+//            solve_refined(a, λ) = max|λ| + √ε solve_sensitivity(a, λ).
 // direct   the inversion-lemma formula λ = R a − R J ν with ν = M_R⁻¹ Jᵀ R a, M_R = M + Jᵀ R J, evaluated as it stands.
 //          Errors: of R a and of the difference, |R||a|; of J ν, J_abs|ν|; of ν, from M_R δν = δ(JᵀRa) − δM_R ν:
 //            solve_amplified(a) = |R| ( |a| + J_abs|ν|
@@ -56,7 +59,7 @@ class Sensitivity {
   [[nodiscard]] VectorX<double> solve_sensitivity(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of λ in the sense of norms. Shapes m, all entries equal.
   [[nodiscard]] VectorX<double> solve_normwise(const VectorX<double>& a, const VectorX<double>& lambda) const;
-  /// Bound on the error of a refined solution. Shapes m.
+  /// Bound on the error of a refined solution in double. Shapes m.
   [[nodiscard]] VectorX<double> solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of the direct inversion-lemma formula. Needs R⁻¹ > 0, not A⁻¹. @throws std::runtime_error when
   /// a row or a block of R⁻¹ is singular. The first call costs n² m + n³ in Quad.
