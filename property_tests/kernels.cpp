@@ -119,6 +119,26 @@ std::string residual_wrong(const Exact& e) {
   return equal(r1, given + motion) && equal(r2, left) ? "" : "residual from a residual";
 }
 
+/// One entry more in every array, which stays as it is.
+template <class T> std::string numbers_wrong(const Problem<T>& p) {
+  KktResidual<T> residual;
+  residual.analyze(p.structure);
+  residual.update(p);
+  Problem<T> got, expected = p;
+  const auto prepare = [](auto& to, auto& from, const auto& one) {
+    from.push_back(one);
+    to.assign(from.size(), one);
+  };
+  prepare(got.S, expected.S, Vector6<T>::Ones());
+  prepare(got.K, expected.K, Vector6<T>::Ones());
+  prepare(got.H, expected.H, Matrix6<T>::Ones());
+  prepare(got.armature, expected.armature, T(1));
+  prepare(got.joint_K, expected.joint_K, T(1));
+  residual.numbers(got);
+  const bool same = got.S == expected.S && got.K == expected.K && got.H == expected.H && got.armature == expected.armature && got.joint_K == expected.joint_K;
+  return same ? "" : "numbers";
+}
+
 MatrixX<Quad> exactly(const std::vector<DoubleDouble>& x) {
   MatrixX<Quad> out(static_cast<Index>(x.size()), 1);
   for (Index r = 0; r < out.rows(); ++r) out(r, 0) = Quad(x[static_cast<std::size_t>(r)].hi) + Quad(x[static_cast<std::size_t>(r)].lo);
@@ -174,6 +194,7 @@ std::string kernel_wrong(const Case& c) {
   std::string words = factors_wrong(e);
   if (words.empty()) words = residual_wrong(e);
   if (words.empty()) words = wide_residual_wrong(c);
+  if (words.empty()) words = numbers_wrong(c.problem);
   return words.empty() ? words : words + " on " + c.label;
 }
 

@@ -45,15 +45,17 @@ struct Spectrum {
 
 std::vector<Spectrum> spectra() {
   constexpr Status ok = Status::ok, not_converged = Status::not_converged;
-  std::vector<Pair> line, close, graded;
+  std::vector<Pair> line, close, graded, slow;
   for (int k = 0; k < 32; ++k) line.push_back({1 + k / 4.0, 0, 1.125 + k / 4.0});
   for (int k = 1; k <= 6; ++k) close.push_back({1, 1, k / 24.0});
   for (int k = 0; k < 32; k += 2) graded.push_back({std::exp2(-25 * k / 31.0), 0, std::exp2(-25 * (k + 1) / 31.0)});
+  for (int k = 0; k < 64; k += 2) slow.push_back({std::exp2(-11.5 * k / 63.0), 0, std::exp2(-11.5 * (k + 1) / 63.0)});
   const std::vector<Pair> regular = {{1, 0.5, 3}};
   return {{"one eigenvalue", {{0.7, 0, 0.7}, {0.7, 0, 0.7}, {0.7, 0, 0.7}}, 1, 1, {ok, 1, 1}, {ok, 1, 2}, 3},
           {"64 eigenvalues from 1 to 79", line, 1, 1, {ok, 51, 80}, {ok, 1, 10}},
           {"pairs of nearly parallel rows", close, 1, 0.5, {ok, 6, 18}, {ok, 6, 11}},
           {"32 eigenvalues from 1 to 2^-50", graded, 1, 1, {not_converged, 370, 370}, {ok, 1, 10}},
+          {"64 eigenvalues from 1 to 2^-23, no step too early", slow, 1, 1, {ok, 600, 690}, {ok, 1, 10}},
           {"regular", regular, 1, 2, {ok, 1, 3}, {ok, 1, 5}},
           {"a row that nothing moves", {{1, 0, 0}}, 1, 2, {not_converged, 3, 3}, {Status::zero_damping, 0, 0}},
           {"a row that hardly anything moves", {{1, 0, 0x1p-30}}, 1, 2, {not_converged, 3, 3}, {ok, 1, 5}},

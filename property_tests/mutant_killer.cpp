@@ -135,6 +135,8 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
         all.push_back([s, matrix, branches] { return plan_broken(make_plan(*s, matrix, branches), *s, matrix, branches); });
   }
   if (of_refinement) all.push_back(laws::stray_motion_wrong);
+  if (of_refinement) all.push_back(laws::factored_mass_wrong);
+  if (of_refinement) all.push_back([hard_last = laws::three_rows_on_one_freedom(2)] { return laws::refinement_wrong(hard_last); });
   if (of_refinement) all.push_back([long_chain = laws::make_case("chain", 12, 1)] { return laws::refinement_wrong(long_chain); });
   for (const std::string_view op_name : names)
     if (of_dependent) all.push_back([op_name] { return laws::dependent_rows_wrong(find_operator(op_name)); });

@@ -1,10 +1,14 @@
 #include "property_tests/refinement_model.h"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "algorithms/refinement.h"
+#include "generators/build.h"
+#include "generators/families.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {
@@ -201,30 +205,128 @@ std::string refinement_wrong(const Case& c) {
   return words;
 }
 
-std::string stray_motion_wrong() {
+namespace {
+
+constexpr Index bodies = 5, unseen = 2 * bodies - 1;
+
+/// Bodies of two freedoms on the axes of their frames, M = mass I for the first, hardly anything for the others, and a row
+/// of damping 1 along the first freedom.
+Problem<double> sliders(double mass) {
   Structure s;
-  s.add_body(ground, 1);
+  for (Index body = 0; body < bodies; ++body) s.add_body(ground, 2);
   s.add_link_constraint(1, {0});
   Problem<double> p(std::make_shared<const Structure>(std::move(s)));
-  p.H[0].diagonal().setOnes();
-  p.S[0][0] = p.K[0][0] = 1;
+  for (auto& H : p.H) H.diagonal().setConstant(&H == p.H.data() ? mass : 0x1p-100);
+  for (std::size_t c = 0; c < p.S.size(); ++c) p.S[c][static_cast<Index>(c % 2)] = 1;
+  p.K[0][0] = 1;
+  return p;
+}
+
+void analyze_and_update(Refinement<double>& r, const Problem<double>& p, Refinement<double>::Mass mass) {
+  r.analyze(p.structure, mass);
+  r.update(p);
+  r.update_damping(Damping<double>::uniform(p.structure->rows, 1));
+}
+
+/// Corrections of the freedom with the row, of the last one, and of the force.
+struct Scripted {
+  double motion, stray, force;
+};
+
+/// Corrections of the sliders as written, then zeros, to λ = 1/2: whether it takes so many of them.
+std::string steps_wrong(const std::vector<Scripted>& script, bool patient, int steps) {
   Refinement<double> refinement;
-  refinement.analyze(p.structure);
-  refinement.update(p);
-  refinement.update_damping(Damping<double>::uniform(1, 1));
+  analyze_and_update(refinement, sliders(1), Refinement<double>::Mass::factored_here);
   Workspace<double> work(refinement.workspace(0));
-  for (const bool patient : {false, true}) {
-    const double motion[] = {0.5, 0, 1e-30}, force[] = {0.375, 0.125, 0}, a = 1;
-    double f = 0;
-    int calls = 0;
-    const auto correct = [&](const double*, const double*, double* d_nu, double* d_lambda, double*) {
-      *d_nu = calls < 3 ? motion[calls] : 0;
-      *d_lambda = calls < 3 ? force[calls] : 0;
-      ++calls;
+  const double a = 1;
+  double f = 0;
+  std::size_t calls = 0;
+  const auto correct = [&](const double*, const double*, double* d_nu, double* d_lambda, double*) {
+    const Scripted now = calls < script.size() ? script[calls] : Scripted{};
+    ++calls;
+    d_nu[0] = now.motion;
+    d_nu[unseen] = now.stray;
+    *d_lambda = now.force;
+  };
+  const Report r = refinement.solve(&a, &f, Accuracy::full(), {100, patient}, correct, work.data());
+  return r.ok() && r.iterations == steps && f == 0.5 ? "" : "Refinement: corrections of ν alone, " + std::to_string(r.iterations) + " steps";
+}
+
+/// τᵀM⁻¹τ for τ = 1, after M is factored if it has to be.
+double energy_of_ones(const Refinement<double>& refinement, Index freedoms) {
+  Workspace<double> tau(padded(freedoms)), work(refinement.factor_M().workspace());
+  std::fill_n(tau.data(), freedoms, 1.0);
+  return refinement.factor_mass().ok() ? refinement.factor_M().energy(tau.data(), work.data()) : -1;
+}
+
+std::string threads_wrong(const Problem<double>& p) {
+  Refinement<double> refinement;
+  analyze_and_update(refinement, p, Refinement<double>::Mass::factored_here);
+  const Index n = p.structure->dofs();
+  const double expected = energy_of_ones(refinement, n);
+  for (int round = 0; round < 20; ++round) {
+    refinement.update(p);
+    std::atomic<int> ready = 0, wrong = 0;
+    const auto ask = [&] {
+      for (++ready; ready < 2;) std::this_thread::yield();
+      for (int k = 0; k < 20; ++k) wrong += energy_of_ones(refinement, n) != expected;
     };
-    const Report r = refinement.solve(&a, &f, Accuracy::full(), {100, patient}, correct, work.data());
-    if (!r.ok() || r.iterations != 2 || f != 0.5) return "Refinement: a stray correction of ν, " + std::to_string(r.iterations) + " steps";
+    std::thread other(ask);
+    ask();
+    other.join();
+    if (wrong > 0) return "Refinement: another energy on two threads";
   }
+  return {};
+}
+
+std::string sizes_wrong(const Problem<double>& p) {
+  Refinement<double> here, elsewhere;
+  analyze_and_update(here, p, Refinement<double>::Mass::factored_here);
+  analyze_and_update(elsewhere, p, Refinement<double>::Mass::factored_elsewhere);
+  KktResidual<double> residual;
+  residual.analyze(p.structure);
+  const Index own = 4 * padded(p.structure->dofs()) + 7 * padded(p.structure->rows);
+  for (const Index correction : {Index(0), Index(1000000)})
+    if (here.workspace(correction) != own + std::max({here.factor_M().workspace(), residual.workspace(), correction}) ||
+        elsewhere.workspace(correction) != own + std::max(residual.workspace(), correction))
+      return "Refinement: workspace";
+  return elsewhere.factor_mass().ok() && (p.structure->dofs() == 0 || elsewhere.bytes() < here.bytes()) ? "" : "Refinement: bytes";
+}
+
+std::string lost_pivot_wrong() {
+  Refinement<double> refinement;
+  const double a = 1;
+  double f = 0;
+  const auto correct = [](const double*, const double* r2, double* d_nu, double* d_lambda, double*) { d_nu[0] = d_lambda[0] = r2[0] / 2; };
+  analyze_and_update(refinement, sliders(1), Refinement<double>::Mass::factored_here);
+  Workspace<double> work(refinement.workspace(0));
+  for (const double mass : {1, 0, 0, 1}) {
+    refinement.update(sliders(mass));
+    const Status expected = mass > 0 ? Status::ok : Status::lost_pivot;
+    for (const double wanted : {Accuracy::fastest().error, 1.0, 1.0}) {
+      const Report r = refinement.solve(&a, &f, {wanted}, {0}, correct, work.data());
+      if (wanted > 1 ? !r.ok() : r.status != expected || (r.ok() && r.error_bound != 2 * unit_roundoff<double>))
+        return "Refinement: " + std::string(name(r.status)) + " with a mass of " + std::to_string(mass);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string stray_motion_wrong() {
+  const std::string words[] = {steps_wrong({{0.5, 0, 0.375}, {0, 0, 0.125}, {1e-30, 0, 0}}, false, 2),
+                               steps_wrong({{0.5, 0, 0.375}, {0, 0, 0.125}, {1e-30, 0, 0}}, true, 2),
+                               steps_wrong({{0.5, 0, 0.5 - 0x1p-30}, {0, 0.25, 0}, {0, -0.25, 0x1p-30}}, false, 3),
+                               steps_wrong({{0.5, 0x1p10, 0.5}, {0, -0.5, 0}}, false, 1)};
+  return *std::max_element(std::begin(words), std::end(words));
+}
+
+std::string factored_mass_wrong() {
+  const Problem<double> none(std::make_shared<const Structure>());
+  const Problem<double> chain = generators::build(generators::find_family("chain").make(200, 1)).problem;
+  for (const std::string& words : {sizes_wrong(none), sizes_wrong(chain), lost_pivot_wrong(), threads_wrong(chain)})
+    if (!words.empty()) return words;
   return {};
 }
 

@@ -12,7 +12,12 @@ namespace delassus::laws {
 /// nothing. Also at 2¹⁰ R⁻¹, where it is the motion whose error is the larger one. Needs a regular A.
 [[nodiscard]] std::string refinement_wrong(const Case& c);
 
-/// Nothing left of the residual and a motion that is corrected nevertheless, by as good as nothing: the refinement ends.
+/// Corrections of ν that the energy hardly sees: as good as nothing where nothing is left of the residual, and the refinement
+/// ends; half of the last one where something is, and it goes on; far smaller than the first one, and it ends.
 [[nodiscard]] std::string stray_motion_wrong();
+
+/// M factored by the refinement, on two threads that ask for it at once, or by somebody else: the same answer; bytes and
+/// workspace of either; M that is singular, then better numbers. In words what differs; empty: nothing.
+[[nodiscard]] std::string factored_mass_wrong();
 
 }  // namespace delassus::laws

@@ -161,7 +161,7 @@ Case rows_on_a_free_joint() {
   return make_case(std::move(p), Damping<double>::uniform(4, 0.25), "rows on a free joint", 1, true);
 }
 
-Case three_rows_on_one_freedom() {
+Case three_rows_on_one_freedom(Index hard) {
   Structure s;
   s.add_body(ground, 1);
   s.add_link_constraint(3, {0});
@@ -169,7 +169,9 @@ Case three_rows_on_one_freedom() {
   p.H[0].diagonal() << 2, 3, 4, 5, 5, 5;
   p.S[0] << 0, 0, 1, 0, 1, 0;
   for (Index r = 0; r < 3; ++r) p.K[static_cast<std::size_t>(r)] << 1, 0, 0.5, 0, static_cast<double>(r + 1), 2;
-  return make_case(std::move(p), {{0, 0.5, 0.25}, {}}, "three rows on one freedom", 1, true);
+  std::vector<double> R_inverse = {0.5, 0.25};
+  R_inverse.insert(R_inverse.begin() + hard, 0);
+  return make_case(std::move(p), {R_inverse, {}}, "three rows on one freedom", 1, true);
 }
 
 std::string trace_of_use(const OperatorRow& row, const Case& before, const Case& c) {

@@ -18,8 +18,8 @@ namespace delassus::laws {
 /// Two rows on the six freedoms of a free body, two between it and another one.
 [[nodiscard]] Case rows_on_a_free_joint();
 
-/// A hard row and two soft ones, on one freedom: A is regular, and there are more rows than freedoms.
-[[nodiscard]] Case three_rows_on_one_freedom();
+/// A hard row, first or last, and two soft ones, on one freedom: A is regular, and there are more rows than freedoms.
+[[nodiscard]] Case three_rows_on_one_freedom(Index hard = 0);
 
 /// What an operator still knows of its use for `before` when it is analyzed, updated, damped and asked for `c`; empty: the
 /// bits and reports are those of a fresh one, and nothing was written behind the workspace.
