@@ -100,8 +100,8 @@ void Promises::print(std::ostream& out) const {
     out << '\n';
   }
   double most = 0;  // of the families without a line
-  for (const auto& [key, c] : counts_)
-    if (!missed([&](const auto& other) { return other.first == key.first; }) && c.unpromised > 0)
+  for (const auto& at : counts_)
+    if (const Count& c = at.second; c.unpromised > 0 && !missed([&](const auto& other) { return other.first == at.first.first; }))
       most = std::max(most, 100.0 * c.unpromised / (c.applies + c.unpromised));
   out << "\nOf every other family at most " << digits(most) << " % for any operator.\n";
 }
