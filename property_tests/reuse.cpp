@@ -191,7 +191,7 @@ std::string trace_of_use(const OperatorRow& row, const Case& before, const Case&
   if (!same(used->update_damping(c.damping), updated) || !same(asked(row, *used, c.seed), expected)) return where + ": another answer at a new damping";
   if (!same(used->update(c.problem, c.damping), updated) || !same(asked(row, *used, c.seed), expected)) return where + ": another answer";
   if (oversteps(row, *used)) return where + ": written behind the workspace";
-  if (used->bytes() != fresh->bytes()) return where + ": other memory";
+  if (used->bytes() != fresh->bytes() || used->workspace() != fresh->workspace()) return where + ": other memory";
   return {};
 }
 

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <set>
+#include <thread>
 
 #include "algorithms/ladder.h"
 #include "generators/build.h"
@@ -109,6 +111,31 @@ TEST(Rungs, NoneIsAskedWhenTheStepsAreUsedUp) {
       later_better += ask("lcaba_qr").error_bound < first.error_bound;
     }
   EXPECT_GT(later_better, 0);
+}
+
+TEST(Rungs, ThreadsThatClimbAtOnceGetTheSameAnswer) {
+  const auto built = generators::build(generators::find_family("hard").make(40, 1));
+  const Index m = built.problem.structure->rows;
+  const auto hard = Damping<double>::uniform(m, 0);
+  const MatrixX<double> a = MatrixX<double>::Ones(m, 1);
+  const Said expected = asked("ladder", built.problem, hard, a, Accuracy::full());
+  EXPECT_EQ(expected.report.rung, "proximal");
+  const auto op = find_operator("ladder").make<double>();
+  op->analyze(built.problem.structure);
+  for (int round = 0; round < 10; ++round) {
+    EXPECT_TRUE(op->update(built.problem, hard).ok());
+    std::atomic<int> ready = 0, wrong = 0;
+    const auto ask = [&] {
+      Workspace<double> w(op->workspace());
+      MatrixX<double> f(m, 1);
+      for (++ready; ready < 2;) std::this_thread::yield();
+      for (int k = 0; k < 10; ++k) wrong += !op->solve(a, f, w).ok() || !laws::judge_bits(f, expected.f).passed();
+    };
+    std::thread other(ask);
+    ask();
+    other.join();
+    EXPECT_EQ(wrong, 0);
+  }
 }
 
 TEST(Rungs, TheDenseOneTakesSoManyRows) {
