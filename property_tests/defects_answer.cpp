@@ -103,8 +103,8 @@ std::vector<DefectRow> conduct_defects() {
   };
 }
 
-/// lcaba_refined whose correction is subtracted.
-template <class T> class WrongRefinement final : public Operator<T> {
+/// lcaba with corrections from a residual A f − a in its own arithmetic, added, or subtracted.
+template <class T, bool subtracted> class WrongRefinement final : public Operator<T> {
  protected:
   void do_analyze() override {
     direct_->analyze(this->structure());
@@ -127,7 +127,7 @@ template <class T> class WrongRefinement final : public Operator<T> {
       static_cast<void>(forward_->apply(f.col(k), residual, w));
       residual = a.col(k) - residual;
       static_cast<void>(direct_->solve(residual, correction, w));
-      f.col(k) -= correction;
+      f.col(k) += subtracted ? MatrixX<T>(-correction) : correction;
     }
     return {};
   }
@@ -158,15 +158,18 @@ template <class T> class Headlong final : public Operator<T> {
 template <class Op, class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<Op>(); }
 
 std::vector<DefectRow> refinement_defects() {
-  OperatorRow subtracted = find_operator("lcaba_refined"), left_out = subtracted, headlong = subtracted;
+  OperatorRow subtracted = find_operator("lcaba_refined"), left_out = subtracted, headlong = subtracted, narrow = subtracted;
   subtracted.name = "refinement_sign";
-  subtracted.makers = {make<WrongRefinement<double>, double>, nullptr, nullptr, nullptr, make<WrongRefinement<Rational>, Rational>, nullptr};
+  subtracted.makers = {make<WrongRefinement<double, true>, double>, nullptr, nullptr, nullptr, make<WrongRefinement<Rational, true>, Rational>, nullptr};
+  narrow.name = "refinement_in_double";
+  narrow.makers = {make<WrongRefinement<double, false>, double>, nullptr, nullptr, nullptr, nullptr, nullptr};
   left_out.name = "refinement_left_out";
   left_out.makers = find_operator("lcaba").makers;
   headlong.name = "steps_ignored";
   headlong.makers = {make<Headlong<double>, double>, nullptr, nullptr, nullptr, make<Headlong<Rational>, Rational>, nullptr};
   return {{headlong.name, "as many steps as it likes", "lcaba_refined", headlong},
           {subtracted.name, "the correction is subtracted", "lcaba_refined", subtracted, nullptr, true},
+          {narrow.name, "one correction, its residual in double", "lcaba_refined", narrow, nullptr, true},
           {left_out.name, "the direct formula under the error class of the refined one", "lcaba_refined", left_out}};
 }
 
