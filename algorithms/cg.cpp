@@ -107,7 +107,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     const double residual = std::sqrt(static_cast<double>(inner(r, r)));
     const double scale = static_cast<double>(largest) * std::sqrt(static_cast<double>(inner(x, x))) +
                          std::sqrt(static_cast<double>(bb));
-    report.backward_error = scale > 0 ? residual / scale : residual;
+    report.backward_error = std::isfinite(scale) ? (scale > 0 ? residual / scale : residual) : scale;  // squares overflow: nothing is known
     if (!(report.backward_error > attainable)) break;
   }
   if (!(report.backward_error <= attainable) || (cut_short && limit < most)) report.status = Status::not_converged;

@@ -92,6 +92,8 @@ template <class T> double Refinement<T>::bound(Buffers& b, T energy) const {
   const T squared = at_rows + energy;
   const double bound = std::sqrt(magnitude(squared)), s = static_cast<double>(total);
   if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
+  if (bound == 0 && largest_magnitude(b.r1, b.n) + largest_magnitude(b.r2, b.m) > 0)  // squares underflow
+    return std::numeric_limits<double>::infinity();
   const double t = relative(bound, std::sqrt(s));
   return t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<T>;
 }

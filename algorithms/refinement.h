@@ -15,7 +15,7 @@
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
 //          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
-//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. There is none where R⁻¹ has a zero.
+//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0 or B² underflows. There is none where R⁻¹ has a zero.
 //          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
 //          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
 //          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.

@@ -15,25 +15,22 @@ namespace {
 
 constexpr Index most_dofs = 100, most_rows = 150;  // of the definition in Quad
 
-double squared_norm(const VectorX<Quad>& x) {
-  Quad sum(0);
-  for (const Quad& e : x) sum += e * e;
-  return static_cast<double>(sum);
-}
+// Norms stay in Quad: in double the squares of forces below 1e-154 N are zero.
 Quad dot(const VectorX<Quad>& x, const VectorX<Quad>& y) {
   Quad sum(0);
   for (Index i = 0; i < x.size(); ++i) sum += x[i] * y[i];
   return sum;
 }
-double largest(const VectorX<Quad>& x) {
-  double most = 0;
-  for (const Quad& e : x) most = std::max(most, std::abs(static_cast<double>(e)));
+Quad norm(const VectorX<Quad>& x) { return sqrt(dot(x, x)); }
+Quad largest(const VectorX<Quad>& x) {
+  Quad most(0);
+  for (const Quad& e : x) most = std::max(most, abs(e));
   return most;
 }
 bool all_finite(const VectorX<Quad>& x) {
   return std::all_of(x.begin(), x.end(), [](const Quad& e) { return isfinite(e); });
 }
-double relative(double error, double to) { return error == 0 ? 0 : error / to; }
+double relative(const Quad& error, const Quad& to) { return error == Quad(0) ? 0 : static_cast<double>(error / to); }
 
 VectorX<Quad> zeros(Index n) { return VectorX<Quad>::Constant(n, Quad(0)); }
 
@@ -105,14 +102,14 @@ struct Truth::System {
     return r;
   }
   /// ν = M⁻¹Jᵀλ; returns ‖ν‖²_M.
-  double motion(const VectorX<Quad>& lambda, VectorX<Quad>& nu) const {
+  Quad motion(const VectorX<Quad>& lambda, VectorX<Quad>& nu) const {
     const VectorX<Quad> none = zeros(lambda.size());
     nu = zeros(problem.structure->dofs());
     const VectorX<Quad> force = evaluate(nu, lambda, none).r1;  // Jᵀλ
     VectorX<Quad> rate = none;
     Workspace<Quad> work(M.workspace());
     M.solve(none.data(), force.data(), rate.data(), nu.data(), work.data());
-    return static_cast<double>(M.energy(force.data(), work.data()));
+    return M.energy(force.data(), work.data());
   }
 };
 
@@ -162,10 +159,10 @@ void Truth::compare_with_definition(const Problem<double>& problem, const Dampin
   }
 }
 
-double Truth::motion_energy(const VectorX<Quad>& lambda, const VectorX<Quad>& nu) const {
+Quad Truth::motion_energy(const VectorX<Quad>& lambda, const VectorX<Quad>& nu) const {
   VectorX<Quad> through_lambda;
   if (nu.size() == 0) return system_->motion(lambda, through_lambda);
-  return -static_cast<double>(dot(nu, system_->evaluate(nu, zeros(lambda.size()), zeros(lambda.size())).r1));
+  return -dot(nu, system_->evaluate(nu, zeros(lambda.size()), zeros(lambda.size())).r1);
 }
 
 Errors Truth::errors_of(const Answer& answer) const {
@@ -174,19 +171,19 @@ Errors Truth::errors_of(const Answer& answer) const {
   const VectorX<Quad> off = answer.lambda - answer_.lambda;
   const bool own_motion = answer.nu.size() > 0;
   const VectorX<Quad> nu_off = own_motion ? VectorX<Quad>(answer.nu - answer_.nu) : VectorX<Quad>();
-  const double motion = std::max(0.0, motion_energy(off, nu_off));
+  const Quad motion = std::max(Quad(0), motion_energy(off, nu_off));
   VectorX<Quad> damped = zeros(off.size());
   system_->damping.multiply(off, damped);
-  const double force = static_cast<double>(dot(off, damped));
+  const Quad force = dot(off, damped);
 
   Errors e;
   e.lambda = relative(largest(off), largest(answer_.lambda));
-  e.motion = relative(std::sqrt(motion), std::sqrt(motion_energy(answer_.lambda, answer_.nu)));
-  e.energy = relative(std::sqrt((own_motion ? motion : 0) + force), std::sqrt(static_cast<double>(dot(answer_.lambda, a_))));
+  e.motion = relative(sqrt(motion), sqrt(motion_energy(answer_.lambda, answer_.nu)));
+  e.energy = relative(sqrt((own_motion ? motion : Quad(0)) + force), sqrt(dot(answer_.lambda, a_)));
   VectorX<Quad> nu;
   static_cast<void>(system_->motion(answer.lambda, nu));
   const VectorX<Quad> rest = system_->evaluate(nu, answer.lambda, a_).r2;
-  e.backward = relative(std::sqrt(squared_norm(rest)), system_->norm * std::sqrt(squared_norm(answer.lambda)) + std::sqrt(squared_norm(a_)));
+  e.backward = relative(norm(rest), Quad(system_->norm) * norm(answer.lambda) + norm(a_));
   return e;
 }
 

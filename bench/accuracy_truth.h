@@ -49,7 +49,7 @@ class Truth {
   struct System;
   void solve();
   void compare_with_definition(const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a);
-  [[nodiscard]] double motion_energy(const VectorX<Quad>& lambda, const VectorX<Quad>& nu) const;
+  [[nodiscard]] Quad motion_energy(const VectorX<Quad>& lambda, const VectorX<Quad>& nu) const;
 
   std::unique_ptr<System> system_;
   VectorX<Quad> a_;

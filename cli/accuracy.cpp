@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "generators/families.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -213,15 +214,15 @@ void add_accuracy(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("accuracy", "error against time and operations for every rung and damping");
   auto o = std::make_shared<Options>();
   c->add_option("SUBJECT", o->subjects, "scenes (also files and swimmer:N) and families");
-  c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(CLI::PositiveNumber);
-  c->add_option("--seed", o->seed, "of families and of the right-hand side")->capture_default_str();
-  c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2");
+  c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(options::whole(1));
+  c->add_option("--seed", o->seed, "of families and of the right-hand side")->check(options::whole(0))->capture_default_str();
+  c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2")->check(options::at_least(0, "1/kg"));
   c->add_option("--op", o->ops, "only these rungs");
   c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->capture_default_str();
   c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(CLI::IsMember({"consistent", "random"}))->capture_default_str();
   c->add_option("--claim", o->claim, "the rung the claim is about")->capture_default_str();
   c->add_option("--out", o->out, "directory for the pictures (SVG)");
-  c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(CLI::PositiveNumber)->capture_default_str();
+  c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(options::above(0, "s"))->capture_default_str();
   c->add_flag("--all", o->all, "every scene at its place and 1000 km away, every family at its own damping; to 1e14 where timed");
   c->add_flag("--steps", o->steps, "the error after each step of refinement, proximal and Krylov iterations, at --damping (0: hard rows) or the own one");
   c->add_flag("--no-time", o->no_time, "no times, no counted operations, no pictures");

@@ -8,6 +8,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -74,8 +75,8 @@ void print_text(const Options& o, const VectorX<double>& input, const Answer& an
 
 int apply(const Options& o, bool has_damping) {
   const OperatorRow& row = find_operator(o.op);
-  require_capability(row, o.solve);
   const Scene scene = open(o.scene, has_damping ? std::optional<double>(o.damping) : std::nullopt);
+  require_capability(row, o.solve);
   const auto structure = structure_of(scene.model);
   const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
   const VectorX<double> input =
@@ -112,7 +113,7 @@ void add_apply(CLI::App& app, Run& run) {
         return !text.empty() && *end == 0 && x >= 0 ? std::string() : "'" + text + "' is not a number ≥ 0 (accepted: 0 … inf)";
       });
   c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
-  CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's");
+  CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's")->check(options::at_least(0, "1/kg"));
   c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, with --solve operations_over_lcaba}");
   c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");
   c->callback([=, &run] { run = [=] { return apply(*o, damping->count() > 0); }; });

@@ -4,7 +4,7 @@
 //
 // The right-hand side of the tables is an acceleration that forces of about one newton cause; where that is beyond 10^±100,
 // promises are held for one of about one m/s² too. The truth is truth.h. Exit code 1 when an answer breaks a promise
-// (answered.h) that is not in `broken_so_far`, or one in there is kept.
+// (answered.h).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -56,21 +56,6 @@ bool too_large(const OperatorRow& row, const Structure& s) { return row.name == 
 /// A row of text per operator: one cell per size.
 using Table = std::map<std::size_t, std::vector<std::string>>;
 
-/// Promises that are broken, and ought to be kept.
-constexpr struct {
-  std::string_view family, op, why;
-  Index n;
-} broken_so_far[] = {
-    {"huge_numbers", "cg", "‖x‖² overflows, and the backward error is 0", 300},
-    {"huge_numbers", "cg", "‖x‖² overflows, and the backward error is 0", 307},
-    {"huge_numbers", "lcaba_float", "the certificate's squares underflow", 307},
-};
-
-bool known_broken(const HardCase& h, Index n, const OperatorRow& row) {
-  return std::any_of(std::begin(broken_so_far), std::end(broken_so_far),
-                     [&](const auto& b) { return b.family == h.family && b.n == n && b.op == row.name; });
-}
-
 /// What is asked of a case; the first question is that of the table.
 std::vector<Question> questions(const Case& c, const Truth& truth) {
   std::vector<Question> all{{c, truth.regular() ? &truth : nullptr, truth.reachable(vectors<double>(c.rows(), 1, 1)), {}}};
@@ -89,9 +74,8 @@ int check_operator(const HardCase& h, Index n, const OperatorRow& row, const std
     if (&q == &asked.front()) cell = cell_text(given, q.truth != nullptr);
     if (broken.empty()) broken = given.broken;
   }
-  const bool known = known_broken(h, n, row);
-  if (broken.empty() != known) return 0;
-  std::cout << (known ? "no longer broken: " : "broken: ") << h.family << " n=" << n << ", " << row.name << ": " << broken << '\n';
+  if (broken.empty()) return 0;
+  std::cout << "broken: " << h.family << " n=" << n << ", " << row.name << ": " << broken << '\n';
   return 1;
 }
 
