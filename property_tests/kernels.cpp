@@ -1,7 +1,11 @@
 #include "property_tests/kernels.h"
 
+#include <utility>
+
+#include "algorithms/columns.h"
 #include "algorithms/factor.h"
 #include "algorithms/kkt_residual.h"
+#include "algorithms/vectors.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {
@@ -187,6 +191,29 @@ std::string wide_residual_wrong(const Case& c) {
   return right ? "" : "residual in two words";
 }
 
+/// dot and largest_magnitude on small whole numbers, the largest in every place and with either sign, zero up to the padded end.
+template <class T> std::string reductions_wrong() {
+  for (const Index n : {0, 1, 7, 8, 9, 17}) {
+    Workspace<T> memory(2 * padded(n) + 16);
+    memory.fill(T(0));
+    T *const x = memory.data(), *const y = x + padded(n);
+    int expected = 0;
+    for (Index c = 0; c < n; ++c) {
+      x[c] = T(static_cast<int>(c % 5) - 2);
+      y[c] = T(static_cast<int>(c % 7) + 1);
+      expected += (static_cast<int>(c % 5) - 2) * (static_cast<int>(c % 7) + 1);
+    }
+    if (!(dot(x, y, n) == T(expected))) return "dot of " + std::to_string(n) + " numbers";
+    for (Index c = 0; c < n; ++c)
+      for (const int largest : {9, -9}) {
+        const T kept = std::exchange(x[c], T(largest));
+        if (!(largest_magnitude(x, n) == 9)) return "largest of " + std::to_string(n) + " numbers";
+        x[c] = kept;
+      }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string kernel_wrong(const Case& c) {
@@ -195,6 +222,8 @@ std::string kernel_wrong(const Case& c) {
   if (words.empty()) words = residual_wrong(e);
   if (words.empty()) words = wide_residual_wrong(c);
   if (words.empty()) words = numbers_wrong(c.problem);
+  for (const auto& reductions : {reductions_wrong<double>, reductions_wrong<float>, reductions_wrong<Rational>})
+    if (words.empty()) words = reductions();
   return words.empty() ? words : words + " on " + c.label;
 }
 
