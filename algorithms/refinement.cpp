@@ -81,6 +81,7 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
                             contraction(now.energy, before.energy));
   const double gained = larger(relative(at_stake, largest), now.size <= 4 * unit_roundoff<T> ? 0 : now.size);
   now.expected = gained == 0 ? 0 : gained * rho / (1 - rho);  // of this and all further corrections
+  if (!invertible_.ok() && now.size > 4 * unit_roundoff<T>) now.expected = larger(now.expected, now.size);  // ρ is no more than a guess
   now.patient = now.size == 0 ? 0 : now.size * larger(1, rho / (1 - rho));
   return now;
 }

@@ -8,9 +8,10 @@
 //            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to λᵀa,
 //          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
 //          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
-//          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that
-//          is below eps; those of a patient correction, which is fast in most directions and slow in some, when it is itself. Two
-//          corrections in a row as large as half the solution are divergence: not_converged.
+//          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that is below eps; where rows are
+//          hard, when moreover the correction itself is below 4 eps; those of a patient correction, which is fast in most
+//          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
+//          are divergence: not_converged.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for

@@ -1,19 +1,17 @@
 // The loop: for every operator, on every family, every law that applies.
 //
-//   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--verbose] [--times]
-//   property_tests --table ratios|promises …       a table of docs/verification.md in place of the summary; promises: of what
-//                                                   would be checked, without checking it
+//   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--table ratios|promises] [--verbose] [--times]
 //
 // Prints the worst ratio per law and operator and why anything was skipped. Exit code 0: every law holds; 1: not.
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 
 #include "property_tests/allocations.h"
 #include "property_tests/law_tables.h"
+#include "property_tests/options.h"
 #include "property_tests/summary.h"
 
 namespace {
@@ -24,40 +22,9 @@ using namespace delassus::laws;
 struct Options {
   std::string op, family, law, table;
   std::uint64_t seeds = 5;
-  int shard = 0, shards = 1;
+  options::Shard shard;
   bool verbose = false, times = false;
 };
-
-constexpr const char* accepted = "--op --family --law --seeds --shard --table --verbose --times";
-
-void read_shard(const std::string& text, Options& o) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) throw ModelError("command line", "--shard", text, "i/n with 1 <= i <= n");
-  o.shard = std::stoi(text.substr(0, slash)) - 1;
-  o.shards = std::stoi(text.substr(slash + 1));
-  if (o.shard < 0 || o.shard >= o.shards) throw ModelError("command line", "--shard", text, "i/n with 1 <= i <= n");
-}
-
-Options read(int argc, char** argv) {
-  Options o;
-  for (int k = 1; k < argc; ++k) {
-    const std::string key = argv[k];
-    if (key == "--verbose" || key == "--times") {
-      (key == "--times" ? o.times : o.verbose) = true;
-      continue;
-    }
-    if (k + 1 >= argc) throw ModelError("command line", key, "has no value", accepted);
-    const std::string value = argv[++k];
-    if (key == "--op") o.op = find_operator(value).name;
-    else if (key == "--family") o.family = generators::find_family(value).name;
-    else if (key == "--law") o.law = find_law(value).name;
-    else if (key == "--seeds") o.seeds = std::stoull(value);
-    else if (key == "--shard") read_shard(value, o);
-    else if (key == "--table" && (value == "ratios" || value == "promises")) o.table = value;
-    else throw ModelError("command line", key, "is unknown", accepted);
-  }
-  return o;
-}
 
 /// What a run is reduced to.
 struct Tables {
@@ -82,8 +49,11 @@ void check_case(const Options& o, std::string_view family, const Case& c, Tables
 }
 
 int run(const Options& o) {
+  if (!o.op.empty()) static_cast<void>(find_operator(o.op));  // these throw, listing the names
+  if (!o.family.empty()) static_cast<void>(generators::find_family(o.family));
+  if (!o.law.empty()) static_cast<void>(find_law(o.law));
   Tables to;
-  int cell = 0;
+  std::uint64_t cell = 0;
   for (const generators::FamilyRow& family : generators::families()) {
     if (!o.family.empty() && family.name != o.family) continue;
     std::vector<Index> sizes = family.sizes;
@@ -91,7 +61,7 @@ int run(const Options& o) {
     if (family.exact_size >= 0 && !listed) sizes.push_back(family.exact_size);
     for (const Index n : sizes)
       for (std::uint64_t seed = 1; seed <= o.seeds; ++seed)
-        if (cell++ % o.shards == o.shard) {
+        if (cell++ % o.shard.of == o.shard.number - 1) {
           const std::clock_t start = std::clock();
           const Case c = make_case(family.name, n, seed);
           check_case(o, family.name, c, to);
@@ -108,10 +78,16 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) {
   count_allocations();
-  try {
-    return run(read(argc, argv));
-  } catch (const std::exception& e) {
-    std::cerr << "property_tests: " << e.what() << '\n';
-    return 2;
-  }
+  CLI::App app{"Every law that applies, on every family, for every operator.\nExit code 1 when a law is broken."};
+  Options o;
+  app.add_option("--op", o.op, "only this operator");
+  app.add_option("--family", o.family, "only this family");
+  app.add_option("--law", o.law, "only this law");
+  app.add_option("--seeds", o.seeds, "problems of every family and size")->check(options::whole(1))->capture_default_str();
+  options::add_shard(app, o.shard);
+  app.add_option("--table", o.table, "a table of docs/verification.md in place of the summary: ratios; promises: of what would be checked, without checking it")
+      ->check(CLI::IsMember({"ratios", "promises"}));
+  app.add_flag("--verbose", o.verbose, "every check");
+  app.add_flag("--times", o.times, "processor time of every problem");
+  return options::run(app, argc, argv, [&] { return run(o); });
 }

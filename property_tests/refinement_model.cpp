@@ -84,6 +84,7 @@ class Model {
       const double rho = std::max({shrunk(largest(d_nu), motion * largest(nu_)), shrunk(largest(d_lambda), force * largest(lambda_)), shrunk(now, energy)});
       const double gained = std::max(at_stake / (of_force * largest(lambda_)), size <= 4 * unit_roundoff<double> ? 0 : size);
       left = asked.patient ? size * std::max(1.0, rho / (1 - rho)) : gained * rho / (1 - rho);
+      if (!asked.patient && !R_inverse_.regular() && size > 4 * unit_roundoff<double>) left = std::max(left, size);
       motion = largest(nu_) == 0 ? 0 : largest(d_nu) / largest(nu_);
       force = largest(d_lambda) / largest(lambda_);
       energy = now;

@@ -186,7 +186,7 @@ VectorX<double> Sensitivity::solve_normwise(const VectorX<double>& a, const Vect
 
 VectorX<double> Sensitivity::solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const {
   const Vector sensitivity = solve_sensitivity(a, lambda), least = Vector::Constant(rows(), norm(lambda));
-  if (!PivotedLdlt<Quad>(data_->dense.R_inverse).regular()) return std::sqrt(unit_roundoff<double>) * sensitivity + least;
+  if (!PivotedLdlt<Quad>(data_->dense.R_inverse).regular()) return unit_roundoff<double> * sensitivity + least;
   const double energy = std::sqrt(std::fabs(a.dot(lambda)));  // ‖ν‖²_M + ‖λ‖²_{R⁻¹}
   const Vector root = magnitudes(MatrixX<Quad>(data_->direct_formula().R.diagonal())).cwiseSqrt();
   return unit_roundoff<double> * sensitivity + least.cwiseMin(root * energy);

@@ -18,9 +18,9 @@
 // refined  refinement of the numbers as given, with residuals in twice the digits, ends when the correction is below ε of the
 //          largest force and below ε in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa, in which |λ_r| ≤ √R_rr ‖·‖:
 //            solve_refined(a, λ) = min( max|λ|, √R_rr √(λᵀa) ) + ε solve_sensitivity(a, λ).
-//          Where R⁻¹ is singular the size δ of a correction is the only sign of the error. One correction is enough when
-//          δ² ≤ ε, and its own error is δ · ε solve_sensitivity, hence
-//            solve_refined(a, λ) = max|λ| + √ε solve_sensitivity(a, λ).
+//          Where R⁻¹ is singular the size of a correction is the only sign of the error: it ends when one is below 4 ε
+//          itself, and the energy norm bounds no row, hence
+//            solve_refined(a, λ) = max|λ| + ε solve_sensitivity(a, λ).
 // direct   the inversion-lemma formula λ = R a − R J ν with ν = M_R⁻¹ Jᵀ R a, M_R = M + Jᵀ R J, evaluated as it stands.
 //          Errors: of R a and of the difference, |R||a|; of J ν, J_abs|ν|; of ν, from M_R δν = δ(JᵀRa) − δM_R ν:
 //            solve_amplified(a) = |R| ( |a| + J_abs|ν|
