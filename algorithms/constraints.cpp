@@ -178,7 +178,7 @@ void general_rows(const Constraint& c, const Poses<T>& poses, const Structure::L
 
 }  // namespace
 
-bool acts_on_joint(Kind kind) { return kind == Kind::joint_friction || kind == Kind::joint_lock; }
+bool acts_on_joint(Kind kind) { return kind == Kind::joint_friction || kind == Kind::joint_lock || kind == Kind::joint_limit; }
 
 bool has_closure(Kind kind) {
   return !acts_on_joint(kind) && kind != Kind::coupling && kind != Kind::general;
@@ -202,6 +202,13 @@ void validate_constraint(const Model& model, const Constraint& c, const std::str
   if (has_closure(c.kind)) check_frames(model, c, file, element);
   else if (acts_on_joint(c.kind)) check_range(model, c.a.body, 0, file, element);
   else check_terms(model, c, file, element);
+  if (c.kind == Kind::joint_limit) {
+    const Index n = dof_count(model.bodies[c.a.body].joint.type);
+    if (c.dof < 0 || c.dof >= n)
+      throw ModelError(file, element, "degree of freedom " + std::to_string(c.dof) + " of " + model.bodies[c.a.body].name,
+                       "0 to " + std::to_string(n - 1));
+    if (c.side != 1 && c.side != -1) throw ModelError(file, element, "side " + std::to_string(c.side), "1 (lower) or -1 (upper)");
+  }
   if (c.kind == Kind::distance && (!(c.length > 0) || std::isinf(c.length)))
     throw ModelError(file, element + " length", std::to_string(c.length) + " m", "finite and above 0 m");
   if (!std::isfinite(c.friction))

@@ -8,9 +8,6 @@
 
 namespace delassus {
 
-/// joint_friction and joint_lock act on a joint (rows 𝒦), all other kinds on bodies (rows K).
-[[nodiscard]] bool acts_on_joint(Constraint::Kind kind);
-
 /// Whether the kind has a position level that assembly can close.
 [[nodiscard]] bool has_closure(Constraint::Kind kind);
 

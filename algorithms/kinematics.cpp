@@ -148,10 +148,13 @@ void check_structure(const Model& model, const Structure& s) {
   require(fits, "kinematics: the problem's structure is not structure_of(model)");
 }
 
-template <class T> void joint_rows(const Structure& s, const Structure::JointConstraint& to, std::vector<T>& joint_K) {
+/// 𝒦 = 1, of a limit side · e_dofᵀ.
+template <class T>
+void joint_rows(const Structure& s, const Constraint& c, const Structure::JointConstraint& to, std::vector<T>& joint_K) {
+  const bool limit = c.kind == Constraint::Kind::joint_limit;
   const Index n = s.dofs(to.body);
   for (Index i = 0; i < to.rows; ++i)
-    for (Index j = 0; j < n; ++j) joint_K[to.first + i * n + j] = T(i == j ? 1 : 0);
+    for (Index j = 0; j < n; ++j) joint_K[to.first + i * n + j] = T(limit ? (j == c.dof ? c.side : 0) : i == j ? 1 : 0);
 }
 
 /// (w, v) ← (w, v) exp(ω): the quaternion turned by ω in body axes.
@@ -233,7 +236,7 @@ template <class T> void kinematics(const Model& model, const VectorX<T>& q, Pose
   }
   std::size_t link = 0, joint = 0;
   for (const Constraint& c : model.constraints) {
-    if (acts_on_joint(c.kind)) joint_rows(s, s.joint_constraints[joint++], out.joint_K);
+    if (acts_on_joint(c.kind)) joint_rows(s, c, s.joint_constraints[joint++], out.joint_K);
     else fill_link_rows(model, c, at, out.S, s.link_constraints[link++], out.K);
   }
 }

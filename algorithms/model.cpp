@@ -44,7 +44,7 @@ struct KindRow {
   std::string_view name;
   Index rows;  // −1: depends on the constraint
 };
-constexpr std::array<KindRow, 13> kind_table{{{"point", 3},
+constexpr std::array<KindRow, 14> kind_table{{{"point", 3},
                                               {"weld", 6},
                                               {"hinge", 5},
                                               {"universal", 4},
@@ -55,6 +55,7 @@ constexpr std::array<KindRow, 13> kind_table{{{"point", 3},
                                               {"contact", 3},
                                               {"joint_friction", -1},
                                               {"joint_lock", -1},
+                                              {"joint_limit", 1},
                                               {"coupling", 1},
                                               {"general", -1}}};
 
@@ -127,7 +128,9 @@ void check_inertia(const Matrix3<double>& I, const std::string& file, const std:
 
 void check_shape(const Shape& shape, const std::string& file, const std::string& element) {
   check_pose(shape.placement, file, element + " placement");
-  const Index sizes = shape.kind == Shape::Kind::sphere ? 1 : shape.kind == Shape::Kind::box ? 3 : 2;
+  if (shape.kind == Shape::Kind::hull && (!shape.points || shape.points->empty()))
+    throw ModelError(file, element, "a hull without points", "1 or more points [m]");
+  const Index sizes = shape.kind == Shape::Kind::sphere ? 1 : shape.kind == Shape::Kind::box ? 3 : shape.kind == Shape::Kind::hull ? 0 : 2;
   for (Index k = 0; k < sizes; ++k)
     if (!(shape.size[k] > 0) || std::isinf(shape.size[k]))
       throw ModelError(file, element + " size", text(shape.size[k]) + " m", "finite and above 0 m");

@@ -2,6 +2,7 @@
 // kinematics.h turns it into a Problem at a configuration q. Units SI, radians.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,14 @@ struct Joint {
   std::vector<double> armature, damping, friction, lower, upper, effort, velocity;
 };
 
-/// Collision primitive, in the body frame. size: sphere {r}; cylinder and capsule {r, half length along z}; box half extents.
+/// Collision primitive, in the body frame. size: sphere {r}; cylinder and capsule {r, half length along z}; box half
+/// extents; hull half extents of the box around its points.
 struct Shape {
-  enum class Kind : std::uint8_t { sphere, cylinder, capsule, box } kind = Kind::sphere;
+  enum class Kind : std::uint8_t { sphere, cylinder, capsule, box, hull } kind = Kind::sphere;
   Vector3<double> size{0, 0, 0};
   Pose<double> placement;
   double friction = -1;  ///< Coulomb coefficient; negative: not given
+  std::shared_ptr<const std::vector<Vector3<double>>> points;  ///< hull only: vertices of a convex polyhedron, shape frame [m]
 };
 
 struct Body {
@@ -61,13 +64,14 @@ struct Frame {
 ///   planar 3        angular xy, linear z (normal)     distance 1      along the line between the two origins
 ///   contact 3       linear along normal z, then tangents x, y of frame a (the first row is the normal)
 ///   joint_friction, joint_lock   one row per degree of freedom of the joint of body a.body
+///   joint_limit 1   side · ν_dof of the joint of body a.body, one-sided: the row's rate is ≥ 0 where the limit is reached
 ///   coupling 1      Σ_k coefficient_k ν_k over single degrees of freedom (gear, mimic), as link rows: ν_k is the
 ///                   dual row of S_k applied to the acceleration of the body less that of its parent
 ///   general m       Σ_k K_k a_k, user blocks in body axes about each body's frame origin
 struct Constraint {
   enum class Kind : std::uint8_t {
     point, weld, hinge, universal, cylindrical, prismatic, planar, distance, contact,
-    joint_friction, joint_lock, coupling, general
+    joint_friction, joint_lock, joint_limit, coupling, general
   };
   struct Term {              ///< of coupling: degree of freedom `dof` of body's joint; of general: `K` (m×6) on body
     Index body = ground;
@@ -80,7 +84,10 @@ struct Constraint {
   Frame a, b;
   double length = 0;             ///< distance [m]
   double friction = -1;          ///< contact: Coulomb coefficient; joint_friction: largest effort [N m or N]
+  Index dof = 0;                 ///< joint_limit: degree of freedom of the joint
+  int side = 1;                  ///< joint_limit: 1 the lower limit, −1 the upper one
   bool loop = false;             ///< a position-level closure that assembly must bring to zero
+  double tolerance = -1;         ///< of the closure [m or rad]; negative: the default of loop_closing.h
   std::vector<Term> terms;
 };
 
@@ -101,6 +108,8 @@ struct Model {
 [[nodiscard]] Index dof_count(JointType t);
 [[nodiscard]] std::string_view name(JointType t);
 [[nodiscard]] std::string_view name(Constraint::Kind k);
+/// joint_friction, joint_lock and joint_limit act on a joint (rows 𝒦), all other kinds on bodies (rows K).
+[[nodiscard]] bool acts_on_joint(Constraint::Kind kind);
 /// Number of rows of a constraint in this model. @throws ModelError when it is on a joint that does not exist.
 [[nodiscard]] Index row_count(const Model& model, const Constraint& c);
 

@@ -82,6 +82,9 @@ std::vector<Patch> patches(const Shape& shape, const Pose<double>& pose, const C
       for (const double side : {-1.0, 1.0})
         add_circle(points, camera, pose.translation + side * shape.size[1] * axis, camera.right, camera.up, shape.size[0]);
       return {{convex_hull(points), 2}};
+    case Shape::Kind::hull:
+      for (const Vector3<double>& p : *shape.points) points.push_back(camera(pose * p));
+      return {{convex_hull(points), 2}};
     case Shape::Kind::sphere:
       add_circle(points, camera, pose.translation, camera.right, camera.up, shape.size[0]);
       return {{points, 2}};

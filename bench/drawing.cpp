@@ -121,7 +121,7 @@ class Picture {
   void add_constraint(const Constraint& c) {
     using Kind = Constraint::Kind;
     if (c.kind == Kind::coupling || c.kind == Kind::general) return;
-    if (c.kind == Kind::joint_friction || c.kind == Kind::joint_lock) {
+    if (acts_on_joint(c.kind)) {
       const Point at = camera_(pose_[static_cast<std::size_t>(c.a.body)].translation);
       marks_.push_back({at, ring_mark, "friction"});
     } else if (c.kind == Kind::contact) {

@@ -54,7 +54,7 @@ json constraints_json(const Model& model) {
     if (!c.name.empty()) j["name"] = c.name;
     if (c.kind != Constraint::Kind::coupling && c.kind != Constraint::Kind::general) {
       j["of"] = end(c.a.body);
-      if (c.kind != Constraint::Kind::joint_friction && c.kind != Constraint::Kind::joint_lock) j["to"] = end(c.b.body);
+      if (!acts_on_joint(c.kind)) j["to"] = end(c.b.body);
     }
     out.push_back(j);
     row += rows;

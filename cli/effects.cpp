@@ -57,7 +57,7 @@ constexpr struct {
                {"couplings", "gears and mimic joints, a row each"},
                {"armature", "rotor inertia reflected to joints, on the diagonal of M"},
                {"joint damping", "viscous damping in joints; not part of A"},
-               {"joint limits", "limits of joints; they have no rows here"}};
+               {"joint limits", "one-sided rows of the joint limits they are asked for"}};
 
 }  // namespace
 

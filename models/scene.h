@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/loop_closing.h"
+#include "models/robot.h"
 
 namespace delassus {
 
@@ -28,6 +29,7 @@ struct Scene {
   double ground_friction = -1;        ///< Coulomb coefficient; negative: not given
   std::string note;                   ///< the scene's own `note`
   std::vector<std::string> notes;     ///< what the loaders left out or changed, one sentence each
+  std::vector<Warning> warnings;      ///< what the loaders found doubtful
   std::map<std::string, Frame> frames;  ///< every link `robot/link` and box, links merged by fixed joints included
 };
 

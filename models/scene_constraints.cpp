@@ -64,10 +64,10 @@ SceneLoader::End SceneLoader::end_of(const Yaml& y) const {
   return {it->second, text};
 }
 
-const UrdfRobot& SceneLoader::robot_of(const Yaml& y) const {
+const Robot& SceneLoader::robot_of(const Yaml& y) const {
   const std::string text = y.text("a robot of the scene");
   std::string all;
-  for (const UrdfRobot& r : robots_) {
+  for (const Robot& r : robots_) {
     if (r.name == text) return r;
     if (all.size() < 200) all += (all.empty() ? "" : ", ") + in_quotes(r.name);
   }
@@ -76,7 +76,7 @@ const UrdfRobot& SceneLoader::robot_of(const Yaml& y) const {
 
 Index SceneLoader::joint_of(const Yaml& y) const {
   const std::string text = y.text("robot/joint");
-  for (const UrdfRobot& r : robots_) {
+  for (const Robot& r : robots_) {
     if (text.size() <= r.name.size() || text.compare(0, r.name.size() + 1, r.name + "/") != 0) continue;
     const auto it = r.joints.find(text.substr(r.name.size() + 1));
     if (it != r.joints.end()) return it->second;

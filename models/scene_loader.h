@@ -6,7 +6,7 @@
 
 #include "models/contacts.h"
 #include "models/scene.h"
-#include "models/urdf.h"
+#include "models/robot.h"
 #include "models/yaml.h"
 
 namespace delassus {
@@ -32,9 +32,9 @@ class SceneLoader {
   void read_robot(const Yaml& y);
   void read_box(const Yaml& y);
   [[nodiscard]] std::string new_name(const Yaml& y);
-  [[nodiscard]] UrdfOptions urdf_options(const Yaml& y, const std::string& name) const;
-  void set_joints(const UrdfRobot& robot, const Yaml& joints);
-  void set_mimics(const UrdfRobot& robot);
+  [[nodiscard]] RobotOptions urdf_options(const Yaml& y, const std::string& name) const;
+  void set_joints(const Robot& robot, const Yaml& joints);
+  void set_mimics(const Robot& robot);
   void set_pose(Index body, const Pose<double>& pose);
   void grow_q();
 
@@ -47,7 +47,7 @@ class SceneLoader {
   void add(const Yaml& y, Constraint c);
   [[nodiscard]] End end_of(const Yaml& y) const;
   [[nodiscard]] Index joint_of(const Yaml& y) const;
-  [[nodiscard]] const UrdfRobot& robot_of(const Yaml& y) const;
+  [[nodiscard]] const Robot& robot_of(const Yaml& y) const;
   void fill_open(bool loops);
 
   // scene_contacts.cpp
@@ -60,7 +60,7 @@ class SceneLoader {
   std::string path_;
   Yaml root_;
   Scene scene_;
-  std::vector<UrdfRobot> robots_;
+  std::vector<Robot> robots_;
   std::vector<Index> object_;                     // per body: index of its robot or box
   Index objects_ = 0;
   std::vector<Open> open_;

@@ -19,11 +19,11 @@ JointType joint_type(const Yaml& y) {
   y.fail(in_quotes(text) + " is no joint type", accepted);
 }
 
-UrdfOptions::Base base_of(const Yaml& y) {
+RobotOptions::Base base_of(const Yaml& y) {
   const std::string accepted = "fixed, free, planar", text = y.text(accepted);
-  if (text == "fixed") return UrdfOptions::Base::fixed;
-  if (text == "free") return UrdfOptions::Base::free;
-  if (text == "planar") return UrdfOptions::Base::planar;
+  if (text == "fixed") return RobotOptions::Base::fixed;
+  if (text == "free") return RobotOptions::Base::free;
+  if (text == "planar") return RobotOptions::Base::planar;
   y.fail(in_quotes(text) + " is no base", accepted);
 }
 
@@ -44,13 +44,13 @@ std::string SceneLoader::new_name(const Yaml& y) {
   const std::string accepted = "a name without '/', not world or ground", text = y.text(accepted);
   if (text.find('/') != std::string::npos || text == "world" || text == "ground") y.fail(in_quotes(text) + " cannot be a name", accepted);
   bool taken = scene_.frames.count(text) > 0;
-  for (const UrdfRobot& r : robots_) taken = taken || r.name == text;
+  for (const Robot& r : robots_) taken = taken || r.name == text;
   if (taken) y.fail("the name " + in_quotes(text) + " is taken", "unique names of robots and boxes");
   return text;
 }
 
-UrdfOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) const {
-  UrdfOptions o;
+RobotOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) const {
+  RobotOptions o;
   o.robot = name;
   const Yaml urdf = y.at("urdf");
   std::filesystem::path file = urdf.text("path of a URDF file");
@@ -62,7 +62,7 @@ UrdfOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) co
   if (y.has("pose")) o.pose = y.at("pose").pose();
   if (y.has("joint_types"))
     for (const auto& [joint, value] : y.at("joint_types").entries()) {
-      UrdfOptions::Type type;
+      RobotOptions::Type type;
       if (value.is_map()) value.keys({"type", "axis2"});
       type.type = joint_type(value.is_map() ? value.at("type") : value);
       if (value.is_map() && value.has("axis2")) type.axis2 = value.at("axis2").direction();
@@ -93,11 +93,11 @@ void SceneLoader::set_pose(Index body, const Pose<double>& pose) {
   scene_.q.segment<7>(k) << pose.translation, r.w(), r.x(), r.y(), r.z();
 }
 
-void SceneLoader::set_joints(const UrdfRobot& robot, const Yaml& joints) {
+void SceneLoader::set_joints(const Robot& robot, const Yaml& joints) {
   for (const auto& [joint, value] : joints.entries()) {
     const auto it = robot.joints.find(joint);
     if (it == robot.joints.end()) value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", "a joint of the URDF that is not fixed");
-    for (const UrdfRobot::Mimic& m : robot.mimics)
+    for (const Robot::Mimic& m : robot.mimics)
       if (m.body == it->second) value.fail("the joint follows another one", "no value for a mimic joint");
     const Index k = scene_.model.first_q[z(it->second)], n = q_size(scene_.model.bodies[z(it->second)].joint.type);
     const std::string accepted = std::to_string(n) + " numbers [rad or m; quaternions w x y z]";
@@ -112,10 +112,10 @@ void SceneLoader::set_joints(const UrdfRobot& robot, const Yaml& joints) {
 }
 
 /// q_mimic = multiplier q_master + offset, along chains of mimics.
-void SceneLoader::set_mimics(const UrdfRobot& robot) {
-  std::map<Index, const UrdfRobot::Mimic*> by_body;
-  for (const UrdfRobot::Mimic& m : robot.mimics) by_body.emplace(m.body, &m);
-  for (const UrdfRobot::Mimic& m : robot.mimics) {
+void SceneLoader::set_mimics(const Robot& robot) {
+  std::map<Index, const Robot::Mimic*> by_body;
+  for (const Robot::Mimic& m : robot.mimics) by_body.emplace(m.body, &m);
+  for (const Robot::Mimic& m : robot.mimics) {
     double factor = m.multiplier, offset = m.offset;
     Index master = m.master;
     std::size_t steps = 0;
@@ -130,17 +130,18 @@ void SceneLoader::set_mimics(const UrdfRobot& robot) {
 
 void SceneLoader::read_robot(const Yaml& y) {
   y.keys({"name", "urdf", "base", "pose", "joints", "joint_types", "armature"});
-  const UrdfOptions options = urdf_options(y, new_name(y.at("name")));
+  const RobotOptions options = urdf_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
-  UrdfRobot robot = add_urdf(scene_.model, options);
+  Robot robot = add_robot(scene_.model, options);
   own_damping_.resize(own_damping_.size() + scene_.model.constraints.size() - before);
   const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
   grow_q();
-  if (options.base == UrdfOptions::Base::free) set_pose(root, options.pose);
+  if (options.base == RobotOptions::Base::free) set_pose(root, options.pose);
   if (y.has("joints")) set_joints(robot, y.at("joints"));
   set_mimics(robot);
   for (const auto& [link, frame] : robot.links) scene_.frames.emplace(robot.name + "/" + link, frame);
   scene_.notes.insert(scene_.notes.end(), robot.notes.begin(), robot.notes.end());
+  scene_.warnings.insert(scene_.warnings.end(), robot.warnings.begin(), robot.warnings.end());
   robots_.push_back(std::move(robot));
 }
 

@@ -102,13 +102,13 @@ JointType type_of(const urdf::Joint& j) {
 
 class Loader {
  public:
-  Loader(Model& model, const UrdfOptions& options)
+  Loader(Model& model, const RobotOptions& options)
       : model_(model), options_(options), checked_(check_urdf(options.file)), urdf_(parse(options.file, checked_.text)) {
     first_ = static_cast<Index>(model.bodies.size());
     check_names();
   }
 
-  UrdfRobot run() {
+  Robot run() {
     out_.name = options_.robot;
     out_.notes = checked_.notes;
     add_root();
@@ -167,9 +167,9 @@ class Loader {
   }
 
   void add_root() {
-    if (options_.base == UrdfOptions::Base::fixed) return place(checked_.root, {ground, options_.pose});
+    if (options_.base == RobotOptions::Base::fixed) return place(checked_.root, {ground, options_.pose});
     Joint joint;
-    const bool planar = options_.base == UrdfOptions::Base::planar;
+    const bool planar = options_.base == RobotOptions::Base::planar;
     joint.name = options_.robot + "/base";
     joint.type = planar ? JointType::planar : JointType::floating;
     if (planar) joint.placement = options_.pose;
@@ -264,22 +264,17 @@ class Loader {
   }
 
   Model& model_;
-  const UrdfOptions& options_;
+  const RobotOptions& options_;
   CheckedUrdf checked_;
   urdf::ModelInterfaceSharedPtr urdf_;
   Index first_ = 0;
   std::vector<Body> bodies_;
   std::vector<std::vector<Part>> parts_;
-  UrdfRobot out_;
+  Robot out_;
 };
 
 }  // namespace
 
-Matrix3<double> rotation_rpy(const Vector3<double>& rpy) {
-  return (Eigen::AngleAxisd(rpy[2], Vector3<double>::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3<double>::UnitY()) *
-          Eigen::AngleAxisd(rpy[0], Vector3<double>::UnitX())).toRotationMatrix();
-}
-
-UrdfRobot add_urdf(Model& model, const UrdfOptions& options) { return Loader(model, options).run(); }
+Robot add_urdf(Model& model, const RobotOptions& options) { return Loader(model, options).run(); }
 
 }  // namespace delassus

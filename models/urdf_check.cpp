@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 
 #include "models/message.h"
-#include "models/urdf.h"
+#include "models/robot.h"
 
 namespace delassus {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "models/message.h"
-#include "models/urdf.h"
+#include "models/robot.h"
 
 namespace delassus {
 

@@ -1,6 +1,7 @@
 // Bounds of the comparison with MuJoCo (mujoco_witness.h). Nothing here calls MuJoCo.
 #include <cmath>
 
+#include "algorithms/loop_closing.h"
 #include "reference/definition.h"
 #include "reference/mujoco_witness.h"
 
@@ -71,7 +72,7 @@ Problem<double> sizes_of(const Model& model, const Vector& q, Problem<double> p)
   }
   std::size_t link = 0;
   for (const Constraint& c : model.constraints) {
-    if (c.kind == Constraint::Kind::joint_friction || c.kind == Constraint::Kind::joint_lock) continue;
+    if (acts_on_joint(c.kind)) continue;
     const Structure::LinkConstraint& e = s.link_constraints[link++];
     const double loss = direction_loss(model, c, reach, at);
     for (const auto& l : e.links) {

@@ -58,7 +58,7 @@ struct PairRow {
 };
 
 bool between_frames(Kind kind) {
-  return kind != Kind::coupling && kind != Kind::general && kind != Kind::joint_friction && kind != Kind::joint_lock;
+  return kind != Kind::coupling && kind != Kind::general && kind != Kind::joint_friction && kind != Kind::joint_lock && kind != Kind::joint_limit;
 }
 
 /// Rows in the order of model.h.
@@ -229,6 +229,7 @@ Matrix MujocoWitness::State::term_rows(const Constraint& c) const {
   Matrix out = Matrix::Zero(row_count(model, c), nv());
   if (c.kind == Kind::joint_friction || c.kind == Kind::joint_lock)
     return T.middleCols(model.first_dof[c.a.body], out.rows()).transpose();  // T⁻¹ = Tᵀ
+  if (c.kind == Kind::joint_limit) return c.side * T.col(model.first_dof[c.a.body] + c.dof).transpose();
   for (const Constraint::Term& t : c.terms) {
     if (c.kind == Kind::coupling) out += t.coefficient * T.col(model.first_dof[t.body] + t.dof).transpose();
     if (c.kind == Kind::coupling || t.body == ground) continue;

@@ -36,7 +36,7 @@ template <class F> std::string complaint(const std::string& what, const F& f) {
 }
 
 std::string complaint_of_urdf(const std::string& what, const std::string& text) {
-  UrdfOptions o;
+  RobotOptions o;
   o.file = write("robot.urdf", text);
   o.robot = "r";
   const std::string message = complaint(what, [&] {
@@ -130,14 +130,14 @@ TEST(BadUrdf, deep_nesting) {
 }
 
 TEST(BadUrdf, a_missing_file) {
-  UrdfOptions o;
+  RobotOptions o;
   o.file = "no/such/robot.urdf";
   const std::string message = complaint("missing", [&] { Model m; add_urdf(m, o); });
   EXPECT_NE(message.find("no/such/robot.urdf"), std::string::npos);
 }
 
 TEST(BadUrdf, overrides_of_unknown_or_fixed_joints) {
-  UrdfOptions o;
+  RobotOptions o;
   o.file = write("robot.urdf", robot(good("a") + good("b") + joint("j", "a", "b", "", "fixed")));
   o.armature["x"] = 1;
   EXPECT_NE(complaint("unknown", [&] { Model m; add_urdf(m, o); }).find("\"x\""), std::string::npos);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "algorithms/delassus.h"
+#include "algorithms/loop_closing.h"
 #include "algorithms/kinematics.h"
 #include "property_tests/unit/lagrangian_bounds.h"
 #include "property_tests/unit/lagrangian_cases.h"

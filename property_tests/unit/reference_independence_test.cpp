@@ -1,5 +1,5 @@
 // The references share no code with the operators: following every #include "…" from reference/ reaches nothing but
-// reference/ and the six headers that say what a problem is.
+// reference/ and the seven headers that say what a problem is.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> allowed{"algorithms/problem.h",    "algorithms/spatial.h", "algorithms/kinematics.h",
+const std::set<std::string> allowed{"algorithms/problem.h",    "algorithms/spatial.h", "algorithms/kinematics.h", "algorithms/loop_closing.h",
                                     "algorithms/model.h",      "algorithms/scalars.h", "algorithms/status.h"};
 
 fs::path root() { return fs::absolute(__FILE__).parent_path().parent_path().parent_path(); }

@@ -31,8 +31,8 @@ std::string joint(const std::string& name, const std::string& type, const std::s
   return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child + "\"/>" + more + "</joint>";
 }
 
-UrdfOptions options(const std::string& file, UrdfOptions::Base base = UrdfOptions::Base::fixed) {
-  UrdfOptions o;
+RobotOptions options(const std::string& file, RobotOptions::Base base = RobotOptions::Base::fixed) {
+  RobotOptions o;
   o.file = file;
   o.robot = "r";
   o.base = base;
@@ -43,7 +43,7 @@ UrdfOptions options(const std::string& file, UrdfOptions::Base base = UrdfOption
 TEST(Urdf, a_fixed_joint_merges_inertia_and_keeps_the_frame) {
   Model m;
   const std::string fixed = "<origin xyz=\"1 0 0\"/>";
-  const UrdfRobot r = add_urdf(m, options(write_urdf("merge", link("a") + link("b") + joint("j", "fixed", "a", "b", fixed)), UrdfOptions::Base::free));
+  const Robot r = add_urdf(m, options(write_urdf("merge", link("a") + link("b") + joint("j", "fixed", "a", "b", fixed)), RobotOptions::Base::free));
   ASSERT_EQ(m.bodies.size(), 1u);
   const Body& b = m.bodies[0];
   EXPECT_EQ(b.name, "r/a");
@@ -60,7 +60,7 @@ TEST(Urdf, joint_types_limits_and_armature) {
       joint("rev", "revolute", "a", "b", "<axis xyz=\"0 3 0\"/>" + limit) + joint("con", "continuous", "b", "c") +
       joint("pla", "planar", "c", "d") + joint("flo", "floating", "c", "e"));
   Model m;
-  UrdfOptions o = options(file);
+  RobotOptions o = options(file);
   o.joint_types["con"] = {JointType::spherical, {0, 1, 0}};
   o.armature["flo"] = 0.75;
   add_urdf(m, o);
@@ -102,7 +102,7 @@ TEST(Urdf, primitives_are_kept_and_meshes_noted) {
   std::string a = link("a");
   a.replace(a.find("</link>"), 7, collisions);
   Model m;
-  const UrdfRobot r = add_urdf(m, options(write_urdf("shapes", a), UrdfOptions::Base::free));
+  const Robot r = add_urdf(m, options(write_urdf("shapes", a), RobotOptions::Base::free));
   ASSERT_EQ(m.bodies[0].shapes.size(), 4u);
   EXPECT_EQ(m.bodies[0].shapes[0].size, Vector3<double>(1, 2, 3));
   EXPECT_EQ(m.bodies[0].shapes[3].kind, Shape::Kind::capsule);

@@ -1,4 +1,6 @@
 // Position-level errors φ(q) of the constraints, and Newton's method that closes the loops of a model.
+#include "algorithms/loop_closing.h"
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
