@@ -25,7 +25,8 @@ double bounding_radius(const Shape& s) {
     case Shape::Kind::sphere: return s.size[0];
     case Shape::Kind::capsule: return s.size[0] + s.size[1];
     case Shape::Kind::cylinder: return std::hypot(s.size[0], s.size[1]);
-    case Shape::Kind::box: return s.size.norm();
+    case Shape::Kind::box:
+    case Shape::Kind::hull: return s.size.norm();
   }
   return 0;
 }
@@ -49,6 +50,9 @@ std::vector<V3> low_points(const Placed& p, double margin) {
     case Shape::Kind::box:
       for (int k = 0; k < 8; ++k)
         out.push_back(p.pose * V3(k & 1 ? size[0] : -size[0], k & 2 ? size[1] : -size[1], k & 4 ? size[2] : -size[2]));
+      return out;
+    case Shape::Kind::hull:
+      for (const V3& x : *p.shape->points) out.push_back(p.pose * x);
       return out;
     case Shape::Kind::cylinder: break;
   }

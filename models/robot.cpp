@@ -19,4 +19,4 @@ Matrix3<double> rotation_rpy(const Vector3<double>& rpy) {
           Eigen::AngleAxisd(rpy[0], Vector3<double>::UnitX())).toRotationMatrix();
 }
 
-Urdf}  // namespace delassus
+}  // namespace delassus

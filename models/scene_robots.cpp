@@ -34,7 +34,7 @@ Body box_body(double mass, const Vector3<double>& size) {
   const Vector3<double> s = size.cwiseAbs2() * (mass / 12);
   b.inertia.diagonal() << s[1] + s[2], s[0] + s[2], s[0] + s[1];
   b.joint.type = JointType::floating;
-  b.shapes.push_back({Shape::Kind::box, size / 2, {}, -1});
+  b.shapes.push_back({Shape::Kind::box, size / 2, {}, -1, {}});
   return b;
 }
 

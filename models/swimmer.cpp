@@ -21,7 +21,7 @@ Body bar(Index k) {
   b.com = {length / 2, 0, 0};
   const double w = 2 * half_width;
   b.inertia.diagonal() << (w * w + w * w) / 12, (length * length + w * w) / 12, (length * length + w * w) / 12;
-  b.shapes.push_back({Shape::Kind::box, {length / 2, half_width, half_width}, {}, -1});
+  b.shapes.push_back({Shape::Kind::box, {length / 2, half_width, half_width}, {}, -1, {}});
   b.shapes[0].placement.translation = {length / 2, 0, half_width};
   return b;
 }
