@@ -42,10 +42,18 @@ template <class T> class Factor {
   /// τᵀ M_R⁻¹ τ, by the backward sweep alone; every joint active.
   [[nodiscard]] T energy(const T* tau, T* work) const;
 
+  /// z with xᵀ J M⁻¹Jᵀ x' = Σ z_c z'_c / inverse_pivots()[c], c < columns(), by the backward sweep alone.
+  void half(const T* x, T* z, T* work) const;
+  /// 1/D of the columns that vectors visit, in the order of the sweeps.
+  [[nodiscard]] const T* inverse_pivots() const { return d_inverse_.data() + plan_->first_column[plan_->first_active]; }
+  [[nodiscard]] Index columns() const { return plan_->active_columns(); }
+
   /// d_r ≥ (J M⁻¹Jᵀ)_rr, equal for rows on one body or joint, at most k times it and twice the mixed terms for k links: from
   /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M, every joint
   /// active. `omega` is scratch, one per body. Cost about 300 operations per body. Shape m.
   void row_mobility(T* d, SixBySix<T>* omega) const;
+  /// d_j = (M⁻¹)_jj of every degree of freedom, in the problem's order, likewise. Shape n.
+  void joint_mobility(T* d, SixBySix<T>* omega) const;
 
   [[nodiscard]] Index workspace() const;  ///< values of V
   [[nodiscard]] Index bytes() const;
@@ -73,6 +81,7 @@ template <class T> class Factor {
 
   template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
   void add_torques(const T* tau, T* u) const;
+  Matrix6<T> mobility(int i, SixBySix<T>* omega) const;
   void velocities(const T* u, T* nu) const;
   template <class V> void backward(Six<V>* f, V* u) const;
   template <class V> void forward(Six<V>* f, V* u) const;

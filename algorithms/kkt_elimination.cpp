@@ -10,6 +10,7 @@ template <class T, Dependent policy> void KktEliminationWith<T, policy>::do_anal
   const Index m = this->structure()->rows;
   refinement_.analyze(this->structure());
   damping_.analyze(*this->structure());
+  hard_rows_.analyze(*this->structure());
   A0_.setZero(m, m);
   A_.setZero(m, m);
   factor_.setZero(m, m);
@@ -32,6 +33,7 @@ Report KktEliminationWith<T, policy>::do_update(const Problem<T>& problem, const
       refinement_.factor_M().project(unit_.data(), A0_.data() + c * A0_.rows(), sweep_work_->data());
       unit_[c] = T(0);
     }
+  if (undamped_.ok()) hard_rows_.update(problem, refinement_.factor_M());
   return do_update_damping(damping);
 }
 
@@ -50,21 +52,33 @@ Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& dampin
     for (Index r = 0; r < m; ++r) A_(r, c) += column_[r];
     hard_[c] = column_[c] == T(0);
   }
-  for (Index c = 0; c < m; ++c) column_[c] = A_(c, c);
-  factor_ = A_;
-  rank_ = ldlt_pivoted(factor_.data(), m, order_.data(), [&](Index row, T& pivot, Index steps) {
-    const T least = damping_.diagonal(row);  // 0 for rows of a dense block
-    if (least > pivot) pivot = least;
-    if (least > T(0)) return true;
-    const T noise = T(30 * unit_roundoff<T> * static_cast<double>(steps)) * column_[row];
-    return ScalarTraits<T>::usable_pivot(pivot) && pivot > noise;
-  });
+  const bool any_hard = std::find(hard_.begin(), hard_.end(), 1) != hard_.end();
+  rank_ = any_hard ? factor_by_rows() : factor_by_pivots();
   dependent_.assign(order_.begin() + rank_, order_.end());
   std::sort(dependent_.begin(), dependent_.end());
   factored_ = {};
   for (const Index r : dependent_)  // a damped row never depends: this arithmetic cannot tell
     if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {Status::lost_pivot, r};
   return {};  // apply is defined all the same; solve reports the lost pivot
+}
+
+template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor_by_rows() {
+  const Index rank = hard_rows_.factor(hard_, damping_, refinement_.factor_M(), order_.data(), sweep_work_->data());
+  for (Index k = 0; k < rank; ++k)
+    for (Index r = k; r < rank; ++r) factor_(r, k) = hard_rows_.share(order_[r], k);
+  return rank;
+}
+
+template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor_by_pivots() {
+  for (Index c = 0; c < A_.cols(); ++c) column_[c] = A_(c, c);
+  factor_ = A_;
+  return ldlt_pivoted(factor_.data(), A_.cols(), order_.data(), [&](Index row, T& pivot, Index steps) {
+    const T least = damping_.diagonal(row);  // 0 for rows of a dense block
+    if (least > pivot) pivot = least;
+    if (least > T(0)) return true;
+    const T noise = T(30 * unit_roundoff<T> * static_cast<double>(steps)) * column_[row];
+    return ScalarTraits<T>::usable_pivot(pivot) && pivot > noise;
+  });
 }
 
 template <class T, Dependent policy>
@@ -107,11 +121,14 @@ void KktEliminationWith<T, policy>::solve_kkt(const T* r1, const T* r2, T* d_nu,
 template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f) const {
   using std::abs;
+  using std::sqrt;
   const Index m = this->size();
-  T largest(0);
-  for (Index r = 0; r < m; ++r) largest = std::max(largest, T(abs(a[r])));
+  T energy(0);  // of the motion, λᵀA₀λ
+  for (Index k = 0; k < m && !dependent_.empty(); ++k)
+    for (Index r = 0; r < m; ++r) energy += f[r] * A0_(r, k) * f[k];
   for (const Index r : dependent_) {
-    T residual = a[r], size = largest;
+    T residual = a[r], size = T(abs(a[r]));
+    if constexpr (!ScalarTraits<T>::exact) size += T(sqrt(hard_rows_.size(r))) * T(sqrt(T(abs(energy))));
     for (Index k = 0; k < m; ++k) {
       residual -= A_(r, k) * f[k];
       size += T(abs(A_(r, k))) * T(abs(f[k]));
@@ -135,7 +152,7 @@ template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_wor
 }
 
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_bytes() const {
-  return refinement_.bytes() + damping_.bytes() +
+  return refinement_.bytes() + damping_.bytes() + hard_rows_.bytes() +
          static_cast<Index>(sizeof(T)) * (3 * A_.size() + static_cast<Index>(2 * unit_.size()) + sweep_work_->size()) +
          static_cast<Index>(sizeof(Index) * 2 * order_.size());
 }

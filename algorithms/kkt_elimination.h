@@ -1,21 +1,24 @@
 // kkt_elimination, dense_refined: the multipliers kept to the end, damping zero allowed.
 //
-// What     f = A⁻¹ a, A = J M⁻¹Jᵀ + R⁻¹ formed by articulated-body sweeps and factored with diagonal pivoting.
+// What     f = A⁻¹ a, A = J M⁻¹Jᵀ + R⁻¹ formed by articulated-body sweeps and factored with diagonal pivoting; where rows are
+//          hard (R⁻¹ = 0), factored by hard_rows.h without forming it.
 // Formula  elimination of ν from  M ν − Jᵀλ = r₁,  J ν + R⁻¹λ = r₂:   A λ = r₂ − J M⁻¹ r₁,   ν = M⁻¹(r₁ + Jᵀλ);
 //          then refinement.h.
-// Rank     pivots are those of the multipliers' block. That of a row with scalar damping is at least R⁻¹_rr, whatever
-//          rounding left of it.
-//          A hard row whose pivot is not above 30 eps · steps · A_rr depends on the rows before it.
-//            kkt_elimination   leaves such rows out (λ_r = 0) and names them in dependent_rows(); a that is not in the range
-//                              of A is `inconsistent`: the residual of a row left out exceeds 30 eps · m (max|a| + |A_r·||λ|).
+// Rank     hard rows are judged by their angles, relative to the numbers they were made from (hard_rows.h); damped ones have no
+//          part in it. The pivot of a row with scalar damping is at least R⁻¹_rr, whatever rounding left of it.
+//            kkt_elimination   leaves dependent rows out (λ_r = 0) and names them in dependent_rows(); a that is not in the
+//                              range of A is `inconsistent`: what the others leave of a row left out exceeds
+//                              30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of hard_rows.h: as far as a row
+//                              that was called dependent can be off, and the rounding of its product.
 //            dense_refined     reports lost_pivot.
-// Cost     update: m sweeps of the factor of M, m³/3; solve: per step 2 m² + 4 sweeps + a residual.
+// Cost     update: m sweeps of the factor of M, m³/3 or that of hard_rows.h; solve: per step 2 m² + 4 sweeps + a residual.
 // Workspace  refinement's + 2 m.
 // Error    refined.
 // Source   paper, section II; refinement.h.
 #pragma once
 
 #include "algorithms/columns.h"
+#include "algorithms/hard_rows.h"
 #include "algorithms/refinement.h"
 
 namespace delassus {
@@ -40,11 +43,14 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   [[nodiscard]] Index do_bytes() const override;
 
  private:
+  Index factor_by_rows();
+  Index factor_by_pivots();
   void solve_multipliers(const T* right, T* lambda, T* work) const;
   [[nodiscard]] Report check_dependent(const T* a, const T* f) const;
 
   Refinement<T> refinement_;
   BlockDiagonal<T> damping_;      // R⁻¹
+  HardRows<T> hard_rows_;
   MatrixX<T> A0_, A_, factor_;    // m × m
   std::vector<T> unit_, column_;
   std::vector<char> hard_;        // per row: R⁻¹_rr = 0

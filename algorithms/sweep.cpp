@@ -155,28 +155,43 @@ template <class T> T Factor<T>::energy(const T* tau, T* work) const {
   return sum;
 }
 
-// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ), from the roots outwards
+template <class T> void Factor<T>::half(const T* x, T* z, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  scatter(x, f, u);
+  backward(f, u);
+  std::copy(u, u + plan_->active_columns(), z);
+}
+
+// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ); of ν_i, in the basis of D:  D⁻¹ + Wᵀ Ω_π W
+template <class T> Matrix6<T> Factor<T>::mobility(int i, SixBySix<T>* omega) const {
+  const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first, p = plan_->parent[i];
+  const Six<T>* const w = w_.data() + plan_->first_w[i];
+  omega[i] = p < 0 ? SixBySix<T>::zero() : omega[p];
+  Matrix6<T> V = Matrix6<T>::Zero();
+  for (int c = 0; c < n; ++c) {
+    V(c, c) = d_inverse_[first + c];
+    if (p < 0) continue;
+    const Six<T> pushed = multiply(omega[p], w[c]);
+    subtract_outer(omega[i], s_[first + c], pushed);
+    subtract_outer(omega[i], pushed, s_[first + c]);
+    for (int e = 0; e < n; ++e) V(e, c) += dot(w[e], pushed);
+  }
+  for (int c = 0; c < n; ++c)
+    for (int e = 0; e < n; ++e) {
+      Six<T> scaled = s_[first + c];
+      scale(scaled, V(e, c));
+      add_outer(omega[i], s_[first + e], scaled);
+    }
+  return V;
+}
+
+// From the roots outwards.
 template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const {
   const auto quadratic = [](const SixBySix<T>& X, const Six<T>& x) { return dot(x, multiply(X, x)); };
   for (int i = plan_->steps; i-- > 0;) {
-    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first, p = plan_->parent[i];
-    const Six<T>* const w = w_.data() + plan_->first_w[i];
-    omega[i] = p < 0 ? SixBySix<T>::zero() : omega[p];
-    Matrix6<T> V = Matrix6<T>::Zero();  // of ν_i, in the basis of D
-    for (int c = 0; c < n; ++c) {
-      V(c, c) = d_inverse_[first + c];
-      if (p < 0) continue;
-      const Six<T> pushed = multiply(omega[p], w[c]);
-      subtract_outer(omega[i], s_[first + c], pushed);
-      subtract_outer(omega[i], pushed, s_[first + c]);
-      for (int e = 0; e < n; ++e) V(e, c) += dot(w[e], pushed);
-    }
-    for (int c = 0; c < n; ++c)
-      for (int e = 0; e < n; ++e) {
-        Six<T> scaled = s_[first + c];
-        scale(scaled, V(e, c));
-        add_outer(omega[i], s_[first + e], scaled);
-      }
+    const int n = plan_->first_column[i + 1] - plan_->first_column[i];
+    const Matrix6<T> V = mobility(i, omega);
     for (int j = first_joint_rows_[i]; j < first_joint_rows_[i + 1]; ++j)
       for (Index r = 0; r < joint_rows_[j].rows; ++r) {
         const T* const k = joint_k_.data() + joint_rows_[j].first + r * n;
@@ -193,8 +208,26 @@ template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const 
     }
 }
 
+// E V Eᵀ of every joint
+template <class T> void Factor<T>::joint_mobility(T* d, SixBySix<T>* omega) const {
+  for (int i = plan_->steps; i-- > 0;) {
+    const int n = plan_->first_column[i + 1] - plan_->first_column[i];
+    const Matrix6<T> V = mobility(i, omega);
+    T* const of_joint = d + structure_->first_dof[plan_->body[i]];
+    if (n == 1) of_joint[0] = V(0, 0);
+    if (n <= 1) continue;
+    const Six<T>* const E = e_.data() + e_of_[i];
+    for (int j = 0; j < n; ++j) {
+      of_joint[j] = T(0);
+      for (int c = 0; c < n; ++c)
+        for (int e = 0; e < n; ++e) of_joint[j] += E[c][j] * V(c, e) * E[e][j];
+    }
+  }
+}
+
 #define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy(const T*, T*) const; \
-  template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const;
+  template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const; \
+  template void Factor<T>::joint_mobility(T*, SixBySix<T>*) const; template void Factor<T>::half(const T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 DELASSUS_INSTANTIATE(Stochastic)
 template void Factor<Stochastic>::scatter(const Stochastic*, Six<Stochastic>*, Stochastic*) const;

@@ -11,29 +11,35 @@ struct Slider {
   const char* what;
   std::vector<std::array<double, 3>> K;
   std::vector<double> a;
-  std::vector<Index> dependent;      // hard rows that depend on others, by the rule of kkt_elimination.h
+  std::vector<Index> dependent;      // hard rows that depend on others, by the rule of hard_rows.h
   Status status = Status::ok;        // of kkt_elimination
   Index where = -1;
   std::vector<double> f = {};        // the answer; empty: not compared
   double damping = 0;
 };
 
-// The thresholds, in units of 2⁻⁵²: a pivot 30 eps · 2 · 1.890625 = 56.7; a residual 30 eps · 2 · (1 + 1) = 60.
+// The size B of a row k here is 3 |k|². The thresholds, in units of u = 2⁻⁵³: a pivot, (30 · 2)² · 3 · 1.890625 = 20418.75 u²;
+// a residual, 30 · 2 · (1 + 1 + √3) = 223.92 u.
 std::vector<Slider> sliders() {
   constexpr Status ok = Status::ok, inconsistent = Status::inconsistent;
-  constexpr double u = 0x1p-26, e = 0x1p-52;
+  constexpr double u = 0x1p-53, far = 0x1p60;
   const std::vector<std::array<double, 3>> three = {{1, 0, 0}, {1, 0, 0}, {2, 0, 0}}, twice = {{1, 0, 0}, {1, 0, 0}};
+  const std::array<double, 3> above = {1.375, 142 * u, 16 * u}, below = {1.375, 142 * u, 15 * u};
   return {
-      {"consistent", three, {1, 1, 2}, {0, 1}, ok, -1, {0, 0, 0.5}},
-      {"the first row contradicts", three, {2, 1, 2}, {0, 1}, inconsistent, 0},
-      {"the second row contradicts", three, {1, 2, 2}, {0, 1}, inconsistent, 1},
+      {"consistent", three, {1, 1, 2}, {1, 2}, ok, -1, {1, 0, 0}},
+      {"the first row contradicts", three, {2, 1, 2}, {1, 2}, inconsistent, 1},
+      {"the second row contradicts", three, {1, 2, 2}, {1, 2}, inconsistent, 1},
+      {"the third row contradicts", three, {1, 1, 3}, {1, 2}, inconsistent, 2},
       {"soft", three, {2, 1, 2}, {}, ok, -1, {}, 0.5},
       {"damping below eps", three, {1, 1, 2}, {}, Status::not_converged, -1, {}, 0x1p-60},
-      {"a pivot of 58", {{2, 0, 0}, {1.375, 7 * u, 3 * u}}, {}, {}},
-      {"a pivot of 53", {{2, 0, 0}, {1.375, 7 * u, 2 * u}}, {}, {1}},
-      {"a pivot of 53, first row", {{1.375, 7 * u, 2 * u}, {2, 0, 0}}, {}, {0}},
-      {"a residual of 60", twice, {1, 1 + 60 * e}, {1}, ok, -1, {1, 0}},
-      {"a residual of 61", twice, {1, 1 + 61 * e}, {1}, inconsistent, 1},
+      {"a pivot of 20420", {{2, 0, 0}, above}, {}, {}},
+      {"a pivot of 20389", {{2, 0, 0}, below}, {}, {1}},
+      {"a pivot of 20420 beside a row in other units", {{2 * far, 0, 0}, above}, {}, {}},
+      {"a pivot of 20389 beside a row in other units", {{2 * far, 0, 0}, below}, {}, {1}},
+      {"a pivot of 20389, first row", {below, {2, 0, 0}}, {}, {1}},
+      {"a row of zeros", {{0, 0, 0}, {1, 0, 0}}, {0, 1}, {0}, ok, -1, {0, 1}},
+      {"a residual of 222", twice, {1, 1 + 222 * u}, {1}, ok, -1, {1, 0}},
+      {"a residual of 224", twice, {1, 1 + 224 * u}, {1}, inconsistent, 1},
       {"zero", twice, {0, 0}, {1}, ok, -1, {0, 0}},
       {"small beside another row", {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}}, {0x1p10, 1, 1 + 0x1p-40}, {2}, ok, -1, {0x1p10, 1, 0}},
       {"small beside the forces", {{1, 0, 0}, {0, 0, 1}, {1, 0x1p-10, 0}, {1, 0x1p-10, 0}}, {0, 0, 1, 1 + 0x1p-30}, {3}},
@@ -96,7 +102,7 @@ std::string singular_block_wrong(const OperatorRow& row, const Slider& k) {
   damping.blocks = {{0, MatrixX<double>::Constant(2, 2, -0.5)}};
   damping.blocks[0].R_inverse.diagonal().setConstant(0.5);
   const Report r = asked(row, k, damping).report;
-  return r.status == Status::lost_pivot && r.where == 0 ? "" : words(r);
+  return r.status == Status::lost_pivot && r.where == 1 ? "" : words(r);
 }
 
 }  // namespace
