@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/model.h"
@@ -47,6 +48,7 @@ struct RobotOptions {
   std::map<std::string, Type> joint_types;               ///< by joint name
   std::map<std::string, double> armature;                ///< by joint name; replaces the file's
   double armature_of_all = -1;                           ///< of joints that neither `armature` nor the file gives one; negative: none
+  std::string keyframe;                                  ///< MJCF only: name or number of the pose to start in; empty: the drawn one
   bool strict = false;                                   ///< warnings are errors
 };
 
@@ -60,6 +62,7 @@ struct Robot {
   std::map<std::string, Frame> links;     ///< every link by its name in the file; merged ones at their place in the body
   std::map<std::string, Index> joints;    ///< moving joints by their name in the file → body they move
   std::vector<Index> bodies;              ///< in order of the model
+  std::vector<std::pair<Index, std::vector<double>>> start;  ///< body → its entries of q, where the file gives a pose
   std::vector<Mimic> mimics;              ///< their coupling constraints are already in the model
   std::vector<std::string> notes;
   std::vector<Warning> warnings;

@@ -137,6 +137,8 @@ void SceneLoader::read_robot(const Yaml& y) {
   const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
   grow_q();
   if (options.base == RobotOptions::Base::free) set_pose(root, options.pose);
+  for (const auto& [body, values] : robot.start)
+    for (std::size_t k = 0; k < values.size(); ++k) scene_.q[scene_.model.first_q[z(body)] + static_cast<Index>(k)] = values[k];
   if (y.has("joints")) set_joints(robot, y.at("joints"));
   set_mimics(robot);
   for (const auto& [link, frame] : robot.links) scene_.frames.emplace(robot.name + "/" + link, frame);

@@ -1,0 +1,271 @@
+#include "models/mjcf.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <set>
+
+#include "models/message.h"
+#include "models/mjcf_reader.h"
+
+namespace delassus {
+namespace {
+
+using Base = RobotOptions::Base;
+
+std::size_t z(Index i) { return static_cast<std::size_t>(i); }
+
+Vector3<double> vector(const double* x) { return {x[0], x[1], x[2]}; }
+
+Matrix3<double> rotation(const double* q) { return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix(); }
+
+Pose<double> shifted(const Vector3<double>& by) { return {Matrix3<double>::Identity(), by}; }
+
+Index type_size(int type) { return type == mjJNT_FREE ? 7 : type == mjJNT_BALL ? 4 : 1; }
+
+}  // namespace
+
+Pose<double> mujoco_pose(const double* position, const double* quaternion) { return {rotation(quaternion), vector(position)}; }
+
+MjcfReader::MjcfReader(Model& model, const RobotOptions& options)
+    : model_(model), options_(options), file_(compile_mjcf(options.file)), m_(*file_.model), findings_(options.strict),
+      link_(z(m_.nbody)), body_of_(z(m_.njnt), ground), first_(static_cast<Index>(model.bodies.size())) {}
+
+Robot MjcfReader::run() {
+  out_.name = options_.robot;
+  for (const std::string& said : file_.warnings) findings_.warn("MuJoCo's own", options_.file, "MuJoCo", said, "see MuJoCo's documentation");
+  choose_pose();
+  check_options();
+  check_base();
+  link_[0] = {ground, options_.pose};
+  for (int b = 1; b < m_.nbody; ++b) add_link(b);
+  add_shapes();
+  finish_bodies();
+  add_equalities();
+  add_notes();
+  out_.notes = std::move(findings_.notes);
+  out_.warnings = std::move(findings_.warnings);
+  return std::move(out_);
+}
+
+std::string MjcfReader::name(mjtObj kind, int id) const {
+  const char* text = mj_id2name(&m_, kind, id);
+  return text == nullptr ? "" : text;
+}
+
+std::string MjcfReader::link_name(int b) const {
+  const std::string given = name(mjOBJ_BODY, b);
+  return given.empty() ? "body" + std::to_string(b) : given;
+}
+
+std::string MjcfReader::joint_name(int j) const {
+  const std::string given = name(mjOBJ_JOINT, j);
+  if (!given.empty()) return given;
+  const int b = m_.jnt_bodyid[j], k = j - m_.body_jntadr[b];
+  return link_name(b) + "_joint" + (m_.body_jntnum[b] > 1 ? std::to_string(k) : "");
+}
+
+Frame MjcfReader::link_frame(int b, const Pose<double>& in_link) const {
+  const Frame& link = link_[z(b)];
+  return {link.body, link.placement * in_link};
+}
+
+/// qpos0, or a keyframe of the file.
+void MjcfReader::choose_pose() {
+  qpos_.assign(m_.qpos0, m_.qpos0 + m_.nq);
+  std::string keys;
+  for (int k = 0; k < m_.nkey; ++k) keys += (k ? ", " : "") + (name(mjOBJ_KEY, k).empty() ? std::to_string(k) : name(mjOBJ_KEY, k));
+  if (options_.keyframe.empty()) {
+    if (m_.nkey > 0) findings_.note(options_.robot + ": the pose is the one the file is drawn in; its keyframes (" + keys + ") are left alone (keyframe: NAME takes one)");
+    return;
+  }
+  for (int k = 0; k < m_.nkey; ++k)
+    if (options_.keyframe == name(mjOBJ_KEY, k) || options_.keyframe == std::to_string(k)) {
+      qpos_.assign(m_.key_qpos + k * m_.nq, m_.key_qpos + (k + 1) * m_.nq);
+      return;
+    }
+  fail("keyframe", in_quotes(options_.keyframe) + " does not exist", keys.empty() ? "the file has no keyframe" : keys);
+}
+
+void MjcfReader::check_options() const {
+  if (!options_.joint_types.empty()) fail("joint_types of the scene", "an MJCF file says its joint types itself", "no joint_types");
+  std::set<std::string> names;
+  for (int j = 0; j < m_.njnt; ++j) names.insert(joint_name(j));
+  for (const auto& [key, value] : options_.armature)
+    if (names.count(key) == 0) fail("armature of the scene", "joint " + in_quotes(key) + " does not exist", "a joint of this file");
+}
+
+/// `base: free` and `planar` need one root that floats or stands on the world.
+void MjcfReader::check_base() {
+  if (!options_.base_given || options_.base == Base::fixed) return;
+  std::string roots;
+  int count = 0;
+  for (int b = 1; b < m_.nbody; ++b) {
+    if (m_.body_parentid[b] != 0) continue;
+    const bool floats = m_.body_jntnum[b] == 1 && m_.jnt_type[m_.body_jntadr[b]] == mjJNT_FREE;
+    roots += (roots.empty() ? "" : ", ") + link_name(b) + (floats ? " (free)" : m_.body_jntnum[b] == 0 ? " (fixed)" : " (on joints of its own)");
+    count += floats || m_.body_jntnum[b] == 0 ? 1 : 2;
+  }
+  if (count != 1) fail("base of the scene", "the roots of this file are " + (roots.empty() ? "none" : roots), "one root that is free or fixed; otherwise base: fixed, or no base");
+}
+
+void MjcfReader::start(Index body, std::vector<double> q) { out_.start.emplace_back(body, std::move(q)); }
+
+Index MjcfReader::add_body(const std::string& name, Index parent, Joint joint) {
+  Body body;
+  body.name = options_.robot + "/" + name;
+  body.parent = parent;
+  body.joint = std::move(joint);
+  bodies_.push_back(std::move(body));
+  parts_.emplace_back();
+  return first_ + static_cast<Index>(bodies_.size()) - 1;
+}
+
+/// `link` in a parent that is the world: the joint of `base` instead of the file's.
+void MjcfReader::add_base(int b, const Pose<double>& link, JointType type) {
+  Joint joint;
+  joint.name = options_.robot + "/base";
+  joint.type = type;
+  if (type == JointType::planar) joint.placement = link;
+  if (out_.root_joint.empty() && bodies_.empty()) out_.root_joint = joint.name;
+  const Index i = add_body(link_name(b), ground, joint);
+  link_[z(b)] = {i, {}};
+  if (type == JointType::planar) return;
+  const Eigen::Quaterniond r(link.rotation);
+  start(i, {link.translation[0], link.translation[1], link.translation[2], r.w(), r.x(), r.y(), r.z()});
+}
+
+void MjcfReader::add_link(int b) {
+  const Frame& parent = link_[z(m_.body_parentid[b])];
+  Pose<double> link = parent.placement * mujoco_pose(m_.body_pos + 3 * b, m_.body_quat + 4 * b);
+  const int joints = m_.body_jntnum[b], j = m_.body_jntadr[b];
+  const bool root = m_.body_parentid[b] == 0, floats = joints == 1 && m_.jnt_type[j] == mjJNT_FREE;
+  if (floats) {  // placed in the world by its own coordinates
+    const double* q = qpos_.data() + m_.jnt_qposadr[j];
+    link = options_.pose * mujoco_pose(q, q + 3);
+  }
+  const Base base = options_.base_given && root && (floats || joints == 0) ? options_.base : floats ? Base::free : Base::fixed;
+  if (joints > 0 && !floats) {
+    add_chain(b, link);
+  } else if (base == Base::fixed) {
+    link_[z(b)] = {parent.body, link};
+  } else {
+    add_base(b, link, base == Base::planar ? JointType::planar : JointType::floating);
+    Joint& joint = bodies_.back().joint;
+    if (floats) {
+      const Index i = link_[z(b)].body;
+      const std::string given = name(mjOBJ_JOINT, j);
+      if (!given.empty()) joint.name = options_.robot + "/" + given;
+      if (bodies_.size() == 1) out_.root_joint = joint.name;
+      if (given.empty() && bodies_.size() > 1) joint.name = options_.robot + "/" + joint_name(j);
+      set_rates(j, joint);
+      body_of_[z(j)] = i;
+      out_.joints.emplace(joint_name(j), i);
+    }
+  }
+  out_.links.emplace(link_name(b), link_[z(b)]);
+  add_inertia(b);
+}
+
+/// Every joint moves a body whose frame lies in the joint's anchor; `link` is the link before they move it.
+void MjcfReader::add_chain(int b, const Pose<double>& link) {
+  Index parent = link_[z(m_.body_parentid[b])].body;
+  Pose<double> at = link;
+  const int first = m_.body_jntadr[b], end = first + m_.body_jntnum[b];
+  for (int j = first; j < end; ++j) {
+    const Vector3<double> anchor = vector(m_.jnt_pos + 3 * j);
+    Joint joint = joint_of(j);
+    const Pose<double> turned = joint.placement;  // by −ref
+    joint.placement = at * shifted(anchor) * turned;
+    parent = add_body(j + 1 == end ? link_name(b) : link_name(b) + "." + joint_name(j), parent, joint);
+    body_of_[z(j)] = parent;
+    out_.joints.emplace(joint_name(j), parent);
+    const double* q = qpos_.data() + m_.jnt_qposadr[j];
+    const std::vector<double> values(q, q + type_size(m_.jnt_type[j]));
+    if (values.size() == 1 ? values[0] != 0 : values[0] != 1) start(parent, values);
+    at = shifted(-anchor);
+  }
+  link_[z(b)] = {parent, at};
+}
+
+Joint MjcfReader::joint_of(int j) const {
+  Joint out;
+  out.name = options_.robot + "/" + joint_name(j);
+  const int type = m_.jnt_type[j];
+  out.type = type == mjJNT_BALL ? JointType::spherical : type == mjJNT_SLIDE ? JointType::prismatic : JointType::revolute;
+  set_rates(j, out);
+  if (type == mjJNT_BALL) return out;
+  out.axis = vector(m_.jnt_axis + 3 * j).normalized();
+  const double ref = m_.qpos0[m_.jnt_qposadr[j]];
+  if (ref != 0 && type == mjJNT_SLIDE) out.placement.translation = -ref * out.axis;
+  if (ref != 0 && type == mjJNT_HINGE) out.placement.rotation = Eigen::AngleAxisd(-ref, out.axis).toRotationMatrix();
+  if (m_.jnt_limited[j]) out.lower.assign(1, m_.jnt_range[2 * j]), out.upper.assign(1, m_.jnt_range[2 * j + 1]);
+  return out;
+}
+
+/// Armature, damping and friction, one entry per degree of freedom.
+void MjcfReader::set_rates(int j, Joint& joint) const {
+  const std::size_t n = z(dof_count(joint.type));
+  const int k = m_.jnt_dofadr[j];
+  const auto given = options_.armature.find(joint_name(j));
+  const bool of_all = m_.dof_armature[k] == 0 && options_.armature_of_all >= 0 && m_.jnt_type[j] != mjJNT_FREE;
+  joint.armature.assign(n, given != options_.armature.end() ? given->second : of_all ? options_.armature_of_all : m_.dof_armature[k]);
+  joint.damping.assign(n, m_.dof_damping[k]);
+  joint.friction.assign(n, m_.dof_frictionloss[k]);
+}
+
+void MjcfReader::add_inertia(int b) {
+  const Frame& link = link_[z(b)];
+  if (link.body == ground || (m_.body_mass[b] == 0 && vector(m_.body_inertia + 3 * b).isZero(0))) return;
+  const Pose<double> principal = link.placement * mujoco_pose(m_.body_ipos + 3 * b, m_.body_iquat + 4 * b);
+  const Matrix3<double>& R = principal.rotation;
+  Matrix3<double> I = R * vector(m_.body_inertia + 3 * b).asDiagonal() * R.transpose();
+  const auto full = file_.full_inertia.find(name(mjOBJ_BODY, b));
+  if (full != file_.full_inertia.end()) {  // unless the compiler was told to change it
+    const Matrix3<double> exact = link.placement.rotation * full->second * link.placement.rotation.transpose();
+    if ((exact - I).norm() < 1e-4 * I.norm()) I = exact;
+  }
+  parts_[z(link.body - first_)].push_back({m_.body_mass[b], principal.translation, I});
+}
+
+/// I = Σ I_k + m_k (|d|² 1 − d dᵀ), d = c_k − c.
+void MjcfReader::finish_bodies() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    for (const Part& p : parts_[i]) body.mass += p.mass, body.com += p.mass * p.com;
+    if (body.mass > 0) body.com /= body.mass;
+    if (parts_[i].size() == 1) body.com = parts_[i][0].com;
+    for (const Part& p : parts_[i]) {
+      const Vector3<double> d = p.com - body.com;
+      body.inertia += p.inertia + p.mass * (d.squaredNorm() * Matrix3<double>::Identity() - d * d.transpose());
+    }
+    body.inertia = (body.inertia + body.inertia.transpose()).eval() / 2;
+    validate_body(body, options_.file);
+    out_.bodies.push_back(model_.add(std::move(body)));
+  }
+}
+
+void MjcfReader::add_notes() {
+  const auto count = [&](int n, const char* what, const char* why) {
+    if (n > 0) findings_.note(options_.robot + ": " + std::to_string(n) + " " + what + " left out (" + why + ")");
+  };
+  int springs = 0, cones = 0, mocap = 0;
+  for (int j = 0; j < m_.njnt; ++j) springs += m_.jnt_stiffness[j] != 0, cones += m_.jnt_limited[j] && m_.jnt_type[j] == mjJNT_BALL;
+  for (int b = 0; b < m_.nbody; ++b) mocap += m_.body_mocapid[b] >= 0;
+  count(springs, "joint spring(s)", "they enter neither M nor J");
+  count(cones, "limit(s) of ball joints", "a cone has no single coordinate");
+  count(m_.nu, "actuator(s)", "they enter neither M nor J");
+  count(m_.ntendon, "tendon(s)", "equalities of fixed tendons are read, their springs, damping and limits are not");
+  count(m_.nexclude + m_.npair, "contact pair(s) and exclude(s)", "links of one robot are not tested against each other");
+  if (mocap > 0) findings_.note(options_.robot + ": " + std::to_string(mocap) + " mocap body(s) stand where the file puts them");
+  for (const std::string& what : file_.left_out)
+    findings_.warn("missing asset", options_.file, what, "its file is missing, it is left out", "put the file there; contacts need collision meshes");
+}
+
+Robot add_mjcf(Model& model, const RobotOptions& options) { return MjcfReader(model, options).run(); }
+
+MjcfSource mjcf_source(const std::string& file) {
+  CompiledMjcf compiled = compile_mjcf(file);
+  return {std::move(compiled.text), std::move(compiled.full_inertia)};
+}
+
+}  // namespace delassus

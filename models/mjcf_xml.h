@@ -1,0 +1,41 @@
+// The XML of an MJCF file beside MuJoCo: includes put in place, what needs missing files taken out, exact inertias.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "algorithms/problem.h"
+
+namespace delassus {
+
+class MjcfXml {
+ public:
+  /// Reads a file and everything it includes. A file that XML cannot be read from is left to MuJoCo's own message.
+  explicit MjcfXml(const std::string& file);
+
+  /// Takes out meshes, height fields, textures and skins whose files are missing, the geoms that are made of them, and
+  /// all that refers to them. @returns false when nothing was missing. @throws ModelError when the mass of a body, or a
+  /// primitive fitted to a mesh, depends on a missing file.
+  bool strip_missing_files();
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+  [[nodiscard]] std::string text() const;
+  /// `fullinertia` of every named body whose inertia the file gives, axes of the body.
+  [[nodiscard]] std::map<std::string, Matrix3<double>> full_inertia() const;
+
+ private:
+  using Element = tinyxml2::XMLElement;
+  void include(Element* at, const std::string& folder, int depth);
+  [[nodiscard]] std::string path_of(const char* kind, const std::string& file) const;
+  void strip_assets(Element* assets);
+  void strip_uses(Element* e, bool massless);
+
+  std::string file_, folder_;
+  tinyxml2::XMLDocument doc_;
+  std::map<std::string, std::map<std::string, bool>> gone_;  ///< kind of asset → names
+  std::vector<std::string> left_out_;
+};
+
+}  // namespace delassus
