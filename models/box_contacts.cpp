@@ -29,12 +29,19 @@ void try_axis(const PlacedBox& a, const PlacedBox& b, V3 n, int kind, double hea
 }
 
 /// Faces of a first, then of b, then pairs of edges; a later kind wins only by a clear lead, so that resting faces do
-/// not flicker between equal descriptions.
+/// not flicker between equal descriptions. Of two faces equally far apart the larger one wins, whatever the order of
+/// the boxes.
 Axis best_axis(const PlacedBox& a, const PlacedBox& b) {
   const double lead = 1e-6 * (a.half.norm() + b.half.norm());
+  const auto area = [](const PlacedBox& box, int k) { return box.half[(k + 1) % 3] * box.half[(k + 2) % 3]; };
   Axis best;
-  for (int k = 0; k < 3; ++k) try_axis(a, b, a.placement.rotation.col(k), 0, k == 0 ? 0 : lead, best);
-  for (int k = 0; k < 3; ++k) try_axis(a, b, b.placement.rotation.col(k), 1, lead, best);
+  double largest = 0;  // face of a
+  for (int k = 0; k < 3; ++k) {
+    const double before = best.separation;
+    try_axis(a, b, a.placement.rotation.col(k), 0, k == 0 ? 0 : lead, best);
+    if (best.separation > before) largest = area(a, k);
+  }
+  for (int k = 0; k < 3; ++k) try_axis(a, b, b.placement.rotation.col(k), 1, area(b, k) > largest && best.kind == 0 ? -lead : lead, best);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const V3 n = a.placement.rotation.col(i).cross(b.placement.rotation.col(j));

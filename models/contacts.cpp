@@ -57,8 +57,8 @@ std::vector<V3> low_points(const Placed& p, double margin) {
     case Shape::Kind::cylinder: break;
   }
   const V3 slope = down - axis.dot(down) * axis;  // towards the lowest point of a rim
-  const bool flat = 2 * size[0] * slope.norm() <= margin;
-  const V3 u = flat ? V3(p.pose.rotation.col(0)) : V3(slope.normalized());
+  const bool flat = 2 * size[0] * slope.norm() <= margin;  // the whole rim is near; its lowest point is among the four
+  const V3 u = slope.norm() <= 1e-6 ? V3(p.pose.rotation.col(0)) : V3(slope.normalized());
   for (const double s : {-1.0, 1.0}) {
     const V3 centre = p.pose.translation + s * size[1] * axis;
     out.push_back(centre + size[0] * u);
