@@ -1,134 +1,22 @@
-// Position-level errors φ(q) of the constraints, and Newton's method that closes the loops of a model.
+// From Newton's method to an assembled pose: which attempt is taken, what is left open, what moved.
 #include "algorithms/loop_closing.h"
 
-#include <Eigen/QR>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "algorithms/constraints.h"
+#include "algorithms/loop_newton.h"
 
 namespace delassus {
 namespace {
 
-using Kind = Constraint::Kind;
+using Vector = VectorX<double>;
 
-/// Rotation of a relative to b, in the axes of a: 2 sin(θ/2) × axis, from the quaternion of R_bᵀ R_a. Its rate at
-/// coincidence is that of the relative rotation; its length grows up to half a turn.
-template <class T> Vector3<T> rotation_error(const Matrix3<T>& a, const Matrix3<T>& b) {
-  using std::sqrt;
-  const Matrix3<T> R = b.transpose() * a;
-  const Vector3<T> skew(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  const T trace = R.trace();
-  Index i = 0;  // the largest diagonal entry
-  for (Index k = 1; k < 3; ++k)
-    if (R(k, k) > R(i, i)) i = k;
-  if (trace > R(i, i)) return skew / T(sqrt(T(1) + trace));
-  const T twice = sqrt(T(1) + T(2) * R(i, i) - trace);  // 2 v_i
-  Vector3<T> v = (R.col(i) + R.row(i).transpose()) / twice;
-  v[i] = twice;
-  return skew[i] < T(0) ? Vector3<T>(-v) : v;
-}
-
-/// The same for the z axes alone: angle from b's to a's, x and y components in the axes of a.
-template <class T> void axis_error(const Matrix3<T>& a, const Matrix3<T>& b, T* out) {
-  using std::sqrt;
-  const Vector3<T> z = a.transpose() * b.col(2);
-  if (!(z[2] > T(-1))) {  // opposite: any axis across turns one into the other
-    out[0] = T(2);
-    out[1] = T(0);
-    return;
-  }
-  const T scale = sqrt(T(T(2) / (T(1) + z[2])));
-  out[0] = scale * z[1];
-  out[1] = -scale * z[0];
-}
-
-template <class T> void pair_error(const Constraint& c, const End<T>& a, const End<T>& b, VectorX<T>& e) {
-  using std::sqrt;
-  const Vector3<T> d = offset(a, b);
-  const Vector3<T> along = a.rotation.transpose() * d;
-  switch (c.kind) {
-    case Kind::point: e = along; return;
-    case Kind::weld: e << rotation_error(a.rotation, b.rotation), along; return;
-    case Kind::hinge:
-      axis_error(a.rotation, b.rotation, e.data());
-      e.template tail<3>() = along;
-      return;
-    case Kind::universal: e << a.rotation.col(2).dot(b.rotation.col(0)), along; return;
-    case Kind::cylindrical:
-      axis_error(a.rotation, b.rotation, e.data());
-      e.template tail<2>() = along.template head<2>();
-      return;
-    case Kind::prismatic: e << rotation_error(a.rotation, b.rotation), along.template head<2>(); return;
-    case Kind::planar:
-      axis_error(a.rotation, b.rotation, e.data());
-      e[2] = along[2];
-      return;
-    case Kind::distance: e[0] = T(sqrt(T(d.dot(d)))) - T(c.length); return;
-    case Kind::contact: e[0] = along[2]; return;
-    default: return;
-  }
-}
-
-/// The loop constraints of a model on their own, and the degrees of freedom of the trees they touch.
-struct Loops {
-  Model model;                      // the same bodies; loop constraints only
-  std::shared_ptr<const Structure> structure;
-  std::vector<Index> column;        // per degree of freedom: its column in J, −1 for trees without loops
-  Index columns = 0;
-  explicit Loops(const Model& whole);
-};
-
-Loops::Loops(const Model& whole) {
-  model = whole;
-  std::erase_if(model.constraints, [](const Constraint& c) { return !c.loop; });
-  structure = structure_of(model);
-  const Structure& s = *structure;
-  std::vector<Index> root(s.parent.size());
-  std::vector<bool> involved(s.parent.size(), false);
-  for (Index i = 0; i < s.bodies(); ++i) root[i] = s.parent[i] == ground ? i : root[s.parent[i]];
-  for (const auto& c : s.link_constraints)
-    for (const auto& l : c.links) involved[root[l.body]] = true;
-  column.assign(s.dofs(), -1);
-  for (Index i = 0; i < s.bodies(); ++i)
-    if (involved[root[i]])
-      for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) column[k] = columns++;
-}
-
-/// J of the loop constraints: the sum of K_e^i S_j over the joints j on the path from body i to its root.
-MatrixX<double> loop_jacobian(const Loops& loops, const Problem<double>& p) {
-  const Structure& s = *loops.structure;
-  MatrixX<double> J = MatrixX<double>::Zero(s.rows, loops.columns);
-  for (const auto& c : s.link_constraints)
-    for (const auto& l : c.links)
-      for (Index j = l.body; j != ground; j = s.parent[j])
-        for (Index k = s.first_dof[j]; k < s.first_dof[j + 1]; ++k)
-          for (Index r = 0; r < c.rows; ++r) J(c.row + r, loops.column[k]) += p.K[l.first + r].dot(p.S[k]);
-  return J;
-}
-
-/// Position errors of every loop constraint at q, one after the other.
-VectorX<double> loop_errors(const Loops& loops, const VectorX<double>& q, Poses<double>& at) {
-  poses(loops.model, q, at);
-  VectorX<double> e(loops.structure->rows);
-  Index row = 0;
-  for (const Constraint& c : loops.model.constraints) {
-    const VectorX<double> own = closure_error(loops.model, c, at);
-    e.segment(row, own.size()) = own;
-    row += own.size();
-  }
-  return e;
-}
-
-/// Largest magnitude of a non-empty vector; NaN when an entry is NaN.
-double largest(const VectorX<double>& x) {
-  double out = 0;
-  for (Index i = 0; i < x.size(); ++i) {
-    if (std::isnan(x[i])) return x[i];
-    out = std::max(out, std::fabs(x[i]));
-  }
-  return out;
+constexpr double unit = unit_roundoff<double>;
+std::string number(double x) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }
 
 /// Lengths that the linear errors of a constraint are differences of [m], at least the 1 of its angles [rad].
@@ -147,75 +35,192 @@ int joints_of(const Loops& loops, const Constraint& c) {
   return joints;
 }
 
-/// @throws ModelError for the loop whose remaining error is largest against what is accepted, if any is.
-void check_closed(const Loops& loops, const VectorX<double>& e, const Poses<double>& at, const std::string& file) {
+/// Of the entries of each loop the largest against what is accepted.
+std::vector<Gap> gaps_of(const Loops& loops, const Closing& closing, const Vector& before, double tolerance) {
+  Poses<double> at;
+  poses(loops.model, closing.q, at);
+  std::vector<Gap> out;
   Index row = 0;
-  for (const Constraint& c : loops.model.constraints) {
+  for (std::size_t k = 0; k < loops.model.constraints.size(); ++k) {
+    const Constraint& c = loops.model.constraints[k];
     const Index m = row_count(loops.model, c);
-    const double worst = largest(e.segment(row, m)), accepted = 30 * unit_roundoff<double> * joints_of(loops, c) * size_of(c, at);
+    const double given = c.tolerance >= 0 ? c.tolerance : tolerance;
+    Gap worst;
+    double most = -1;
+    for (Index r = 0; r < m; ++r) {
+      Gap g;
+      g.constraint = loops.constraint[k];
+      g.angle = r < angles_of(c.kind);
+      g.before = largest(before.segment(row, m));
+      g.after = std::fabs(closing.e[row + r]);
+      g.rounding = 30 * unit * joints_of(loops, c) * size_of(c, at);
+      g.accepted = std::max(g.rounding, given >= 0 ? given : accepted_gap * (g.angle ? 1 : closing.levers[k]));
+      const double share = g.after / g.accepted;
+      if (r > 0 && share <= most) continue;
+      worst = g, most = share;
+      if (std::isnan(share)) break;
+    }
+    out.push_back(worst);
     row += m;
-    if (worst <= accepted) continue;
-    std::ostringstream found, limit;
-    found << "loop cannot be closed from this configuration, residual " << worst << " m or rad";
-    limit << "at most " << accepted << " m or rad after Newton's method";
-    throw ModelError(file, std::string(name(c.kind)) + " constraint" + (c.name.empty() ? "" : " " + c.name), found.str(),
-                     limit.str());
   }
+  return out;
 }
 
-/// The least-squares step −J⁺ φ, on all degrees of freedom.
-VectorX<double> newton_step(const Loops& loops, const Problem<double>& p, const VectorX<double>& e) {
-  const VectorX<double> x = loop_jacobian(loops, p).completeOrthogonalDecomposition().solve(e);
-  VectorX<double> v = VectorX<double>::Zero(loops.structure->dofs());
-  for (Index k = 0; k < v.size(); ++k)
-    if (loops.column[k] >= 0) v[k] = -x[loops.column[k]];
-  return v;
+/// Degrees of freedom beyond the limits that were to be kept.
+std::vector<Beyond> beyond_of(const Loops& loops, const Vector& q) {
+  std::vector<Beyond> out;
+  for (std::size_t i = 0; i < loops.model.bodies.size(); ++i)
+    for (Index k = loops.model.first_dof[i]; k < loops.model.first_dof[i + 1]; ++k) {
+      const Index c = loops.column[k];
+      if (c < 0 || loops.coordinate[c] < 0) continue;
+      const double value = q[loops.coordinate[c]], slack = 4 * unit * std::fabs(value);
+      const double limit = std::clamp(value, loops.lower[c], loops.upper[c]);
+      if (std::fabs(value - limit) > slack) out.push_back({static_cast<Index>(i), k - loops.model.first_dof[i], value, limit});
+    }
+  return out;
+}
+
+/// A run of Newton's method and what it is worth.
+struct Attempt {
+  Closing closing;
+  std::vector<Gap> gaps;
+  int grade = 0;  // 0 closed to rounding, 1 within what is accepted, 2 open
+};
+
+int grade_of(const std::vector<Gap>& gaps) {
+  int grade = 0;
+  for (const Gap& g : gaps) grade = std::max(grade, g.open() ? 2 : g.after > g.rounding ? 1 : 0);
+  return grade;
+}
+
+/// Whether the couplings keep their sums up to rounding.
+bool couplings_hold(const Loops& loops, const Closing& closing) {
+  const Vector error = closing.coupling_error();
+  const double size = largest(closing.q);
+  for (Index k = 0; k < error.size(); ++k)
+    if (!(std::fabs(error[k]) <= 30 * unit * size * loops.C.row(k).lpNorm<1>())) return false;
+  return true;
+}
+
+/// Everything that is the same for all attempts.
+struct Task {
+  const Loops& loops;
+  Vector before;
+  double tolerance;
+
+  [[nodiscard]] Attempt graded(const Closing& closing) const {
+    Attempt a{closing, gaps_of(loops, closing, before, tolerance), 0};
+    a.grade = couplings_hold(loops, closing) ? grade_of(a.gaps) : 2;
+    return a;
+  }
+  /// Along the strong directions first; the weak ones where they close the loops to rounding, or are needed.
+  [[nodiscard]] Attempt run(const Vector& start, bool limits) const {
+    Closing closing(loops, start);
+    closing.descend(strong_directions, limits);
+    Attempt first = graded(closing);
+    if (first.grade == 0) return first;
+    closing.descend(all_directions, limits);
+    Attempt second = graded(closing);
+    return second.grade < first.grade || first.grade == 2 ? second : first;
+  }
+};
+
+/// The middle of their ranges for the degrees of freedom that left them.
+Vector middle(const Model& model, Vector q, const std::vector<Beyond>& beyond) {
+  for (const Beyond& b : beyond) {
+    const Joint& joint = model.bodies[b.body].joint;
+    if (joint.lower.empty() || joint.upper.empty()) continue;
+    const double m = joint.lower[b.dof] / 2 + joint.upper[b.dof] / 2;
+    if (std::isfinite(m)) q[model.first_q[b.body] + b.dof] = m;
+  }
+  return q;
+}
+
+std::vector<Move> moves_of(const Model& model, const Vector& from, const Vector& to) {
+  std::vector<Move> out;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const JointType type = model.bodies[i].joint.type;
+    const Index k = model.first_q[i], n = q_size(type);
+    const Vector a = from.segment(k, n), b = to.segment(k, n);
+    const Vector d = b - a;
+    Move m{static_cast<Index>(i), 0, 0};
+    const auto angle = [](const Eigen::Vector4d& x, const Eigen::Vector4d& y) {
+      const double along = std::fabs(x.dot(y));
+      return 2 * std::atan2((y - x * x.dot(y)).norm(), along);
+    };
+    switch (type) {
+      case JointType::revolute: m.turned = std::fabs(d[0]); break;
+      case JointType::prismatic: m.shifted = std::fabs(d[0]); break;
+      case JointType::universal: m.turned = largest(d); break;
+      case JointType::planar: m.turned = std::fabs(d[0]), m.shifted = d.tail(2).norm(); break;
+      case JointType::spherical: m.turned = angle(a, b); break;
+      case JointType::floating: m.turned = angle(a.tail(4), b.tail(4)), m.shifted = d.head(3).norm(); break;
+      case JointType::cylindrical: m.turned = std::fabs(d[0]), m.shifted = std::fabs(d[1]); break;
+    }
+    if (std::max(m.turned, m.shifted) > 30 * unit * static_cast<double>(model.bodies.size()) * std::max(1.0, largest(a))) out.push_back(m);
+  }
+  return out;
+}
+
+std::string told(const Model& model, const Gap& g) {
+  const Constraint& c = model.constraints[g.constraint];
+  return (c.name.empty() ? std::string(name(c.kind)) : c.name) + " by " + number(g.after) + (g.angle ? " rad" : " m");
 }
 
 }  // namespace
 
-template <class T> VectorX<T> closure_error(const Model& model, const Constraint& c, const Poses<T>& at) {
-  VectorX<T> e = VectorX<T>::Constant(row_count(model, c), T(0));
-  if (has_closure(c.kind)) pair_error(c, end_of(at, c.a), end_of(at, c.b), e);
-  return e;
-}
-
-Assembly assemble(const Model& model, const VectorX<double>& q, const std::string& file) {
-  require(q.size() == model.q_size(), "assemble: q does not have Model::q_size() entries");
-  Assembly result{q, 0, 0, 0};
+Assembly close_loops(const Model& model, const VectorX<double>& q, const AssemblyOptions& options) {
+  require(q.size() == model.q_size(), "close_loops: q does not have Model::q_size() entries");
+  require(options.held.empty() || static_cast<Index>(options.held.size()) == model.dofs(), "close_loops: held does not have Model::dofs() entries");
+  Assembly result;
+  result.q = q;
   if (std::none_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.loop; }))
     return result;
-  const Loops loops(model);
-  Problem<double> problem(loops.structure);
+  const Loops loops(model, q, options);
   Poses<double> at;
-  VectorX<double> e = loop_errors(loops, q, at);
-  result.residual_before = result.residual = largest(e);
-  double norm = e.norm();
-  for (bool falling = true; falling && norm > 0;) {
-    falling = false;
-    kinematics(loops.model, result.q, at, problem);
-    VectorX<double> v = newton_step(loops, problem, e);
-    // Half the step while the error does not fall; 53 halvings leave q unchanged.
-    for (int halving = 0; halving < 53 && !falling; ++halving, v /= 2) {
-      const VectorX<double> trial = integrate(loops.model, result.q, v);
-      const VectorX<double> trial_error = loop_errors(loops, trial, at);
-      if (!(trial_error.norm() < norm)) continue;
-      result.q = trial;
-      e = trial_error;
-      norm = e.norm();
-      ++result.steps;
-      falling = true;
+  const Task task{loops, loop_errors(loops, q, at), options.tolerance};
+  Attempt best = task.run(q, false);
+  result.beyond = beyond_of(loops, best.closing.q);
+  if (!result.beyond.empty() && best.grade < 2)
+    for (const Vector& start : {q, middle(model, q, result.beyond)}) {
+      Attempt within = task.run(start, true);
+      if (within.grade > best.grade || !beyond_of(loops, within.closing.q).empty()) continue;
+      best = std::move(within);
+      result.beyond.clear();
+      break;
     }
-  }
-  result.residual = largest(e);
-  poses(loops.model, result.q, at);
-  check_closed(loops, e, at, file);
+  result.q = best.closing.q;
+  result.residual_before = largest(task.before);
+  result.residual = largest(best.closing.e);
+  result.steps = best.closing.steps;
+  result.gaps = best.gaps;
+  result.moves = moves_of(model, q, result.q);
   return result;
 }
 
-template VectorX<double> closure_error<double>(const Model&, const Constraint&, const Poses<double>&);
-template VectorX<float> closure_error<float>(const Model&, const Constraint&, const Poses<float>&);
-template VectorX<Quad> closure_error<Quad>(const Model&, const Constraint&, const Poses<Quad>&);
-template VectorX<Counted> closure_error<Counted>(const Model&, const Constraint&, const Poses<Counted>&);
+OpenLoops open_loops(const Model& model, const Assembly& a) {
+  OpenLoops out;
+  std::string others;
+  const auto share = [](const Gap& g) { return g.after / g.accepted; };
+  for (const Gap& g : a.gaps)
+    if (g.open() && (out.worst == nullptr || std::isnan(g.after) || share(g) > share(*out.worst))) out.worst = &g;
+  if (out.worst == nullptr) return out;
+  for (const Gap& g : a.gaps)
+    if (g.open() && &g != out.worst) others += (others.empty() ? "; also open: " : ", ") + told(model, g);
+  const Gap& w = *out.worst;
+  const std::string unit_of = w.angle ? " rad" : " m";
+  out.problem = "the loop cannot be closed from this pose: open by " + number(w.after) + unit_of + " after " + std::to_string(a.steps) +
+                " steps of assembly, by " + number(w.before) + " before" + others;
+  out.accepted = "at most " + number(w.accepted) + unit_of;
+  return out;
+}
+
+Assembly assemble(const Model& model, const VectorX<double>& q, const std::string& file, const AssemblyOptions& options) {
+  Assembly a = close_loops(model, q, options);
+  const OpenLoops open = open_loops(model, a);
+  if (open.worst == nullptr) return a;
+  const Constraint& c = model.constraints[open.worst->constraint];
+  throw ModelError(file, std::string(name(c.kind)) + " constraint" + (c.name.empty() ? "" : " " + c.name), open.problem, open.accepted);
+}
 
 }  // namespace delassus

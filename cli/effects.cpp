@@ -12,7 +12,7 @@ using Kind = Constraint::Kind;
 
 struct Counts {
   Index contacts = 0, friction_contacts = 0, loops = 0, closures = 0, friction_rows = 0, lock_rows = 0, couplings = 0;
-  Index limits = 0, damped = 0, friction_joints = 0, armature = 0;
+  Index limits = 0, limit_rows = 0, damped = 0, friction_joints = 0, armature = 0;
 };
 
 bool any(const std::vector<double>& values, bool (*test)(double)) {
@@ -30,6 +30,7 @@ Counts count(const Scene& scene) {
     n.couplings += c.kind == Kind::coupling;
     if (c.kind == Kind::joint_friction) n.friction_rows += row_count(scene.model, c);
     else if (c.kind == Kind::joint_lock) n.lock_rows += row_count(scene.model, c);
+    else if (c.kind == Kind::joint_limit) ++n.limit_rows;
     else if (c.kind != Kind::contact && c.kind != Kind::coupling && !c.loop) ++n.closures;
   }
   const auto positive = +[](double v) { return v > 0; };
@@ -89,7 +90,8 @@ json effects_json(const Scene& scene) {
   add("couplings", n.couplings > 0, number(n.couplings, "coupled row") + " (gear or mimic)", "no gear, no mimic joint");
   add("armature", n.armature > 0, number(n.armature, "joint") + " with armature, added to the diagonal of M", "no joint has armature");
   add("joint damping", false, "", n.damped ? number(n.damped, "joint") + " give viscous damping, which A does not contain" : "no joint has viscous damping");
-  add("joint limits", false, "", n.limits ? number(n.limits, "joint") + " have limits, but limits have no rows here" : "no joint has limits");
+  add("joint limits", n.limit_rows > 0, number(n.limit_rows, "row") + ", one-sided",
+      n.limits ? number(n.limits, "joint") + " with limits, but the scene asks for no joint_limit rows" : "no joint has limits");
   return out;
 }
 

@@ -10,7 +10,7 @@ namespace delassus {
 SceneLoader::SceneLoader(const std::string& path) : path_(path), root_(Yaml::open(path)) {}
 
 Scene SceneLoader::run() {
-  root_.keys({"note", "pose", "gravity", "robots", "boxes", "ground", "constraints", "contacts", "damping"});
+  root_.keys({"note", "pose", "gravity", "robots", "boxes", "ground", "constraints", "hold", "assembly", "contacts", "damping"});
   scene_.file = path_;
   scene_.name = std::filesystem::path(path_).stem().string();
   if (root_.has("note")) scene_.note = root_.at("note").text("a text");
@@ -39,13 +39,7 @@ Scene SceneLoader::run() {
     for (const Yaml& y : root_.at("constraints").list("a list of {kind, ...}")) read_constraint(y);
   poses(scene_.model, scene_.q, poses_);
   fill_open(true);
-  for (const Constraint& c : scene_.model.constraints) scene_.has_loops = scene_.has_loops || c.loop;
-  scene_.assembly.q = scene_.q;
-  if (scene_.has_loops) {
-    scene_.assembly = assemble(scene_.model, scene_.q, path_);
-    scene_.q = scene_.assembly.q;
-    poses(scene_.model, scene_.q, poses_);
-  }
+  close_loops_of_scene();
   fill_open(false);
   if (root_.has("contacts")) read_contacts(root_.at("contacts"));
   read_damping(root_);

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = Constraint::Kind;
 constexpr std::array kinds{Kind::point, Kind::weld, Kind::hinge, Kind::universal, Kind::cylindrical, Kind::prismatic,
-                           Kind::planar, Kind::distance, Kind::contact, Kind::joint_friction, Kind::joint_lock,
+                           Kind::planar, Kind::distance, Kind::contact, Kind::joint_friction, Kind::joint_lock, Kind::joint_limit,
                            Kind::coupling, Kind::general};
 
 Kind kind_of(const Yaml& y) {
@@ -86,13 +86,14 @@ Index SceneLoader::joint_of(const Yaml& y) const {
 
 void SceneLoader::add(const Yaml& y, Constraint c) {
   if (y.has("name")) c.name = y.at("name").text("a name");
+  constraint_at_.emplace(scene_.model.constraints.size(), y);
   scene_.model.constraints.push_back(std::move(c));
   own_damping_.push_back(y.has("damping") ? std::optional<Yaml>(y.at("damping")) : std::nullopt);
 }
 
 void SceneLoader::read_two_ends(const Yaml& y, Constraint c) {
-  if (c.kind == Kind::distance) y.keys({"kind", "name", "of", "at", "to", "to_at", "length", "loop", "damping"});
-  else y.keys({"kind", "name", "of", "at", "rpy", "axes", "to", "to_at", "to_rpy", "to_axes", "loop", "damping"});
+  if (c.kind == Kind::distance) y.keys({"kind", "name", "of", "at", "to", "to_at", "length", "loop", "tolerance", "damping"});
+  else y.keys({"kind", "name", "of", "at", "rpy", "axes", "to", "to_at", "to_rpy", "to_axes", "loop", "tolerance", "damping"});
   const End a = end_of(y.at("of")), b = end_of(y.at("to"));
   if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and world");
   c.name = std::string(name(c.kind)) + " " + a.name + " - " + b.name;
@@ -106,6 +107,10 @@ void SceneLoader::read_two_ends(const Yaml& y, Constraint c) {
   c.a = {a.frame.body, a.frame.placement * at};
   c.b = {b.frame.body, b.frame.placement * to};
   c.loop = y.has("loop") ? y.at("loop").boolean() : a.frame.body != ground && b.frame.body != ground;
+  if (y.has("tolerance")) {
+    c.tolerance = y.at("tolerance").non_negative(" [m or rad]");
+    if (!c.loop) y.at("tolerance").fail("the constraint is no loop", "tolerance only with loop: true");
+  }
   if (y.has("length")) c.length = y.at("length").positive(" [m]");
   const bool length = c.kind == Kind::distance && !y.has("length");
   open_.push_back({scene_.model.constraints.size(), !y.has("to_at"), !to_rotation && c.kind != Kind::point && c.kind != Kind::distance, length, y});
@@ -145,6 +150,46 @@ void SceneLoader::read_joints(const Yaml& y, Kind kind) {
     if (friction) c.friction = y.has("effort") ? y.at("effort").non_negative(" [N m or N]") : joint.friction.empty() ? 0 : joint.friction[0];
     add(y, std::move(c));
   }
+}
+
+/// One row for each finite limit asked for: of one degree of freedom and side, or of all.
+void SceneLoader::read_limits(const Yaml& y) {
+  y.keys({"kind", "name", "robot", "joint", "dof", "side", "damping"});
+  if (y.has("robot") == y.has("joint")) y.fail("needs one of robot and joint", "robot: NAME for all its limits, joint: robot/joint for one joint");
+  if (y.has("robot") && y.has("dof")) y.at("dof").fail("is given for a whole robot", "dof only with joint");
+  int side = 0;  // both
+  if (y.has("side")) {
+    const std::string text = y.at("side").text("lower, upper");
+    if (text != "lower" && text != "upper") y.at("side").fail(in_quotes(text) + " is no side", "lower, upper; both when absent");
+    side = text == "lower" ? 1 : -1;
+  }
+  std::vector<Index> bodies;
+  if (y.has("joint")) bodies.push_back(joint_of(y.at("joint")));
+  else
+    for (const auto& [joint, body] : robot_of(y.at("robot")).joints) bodies.push_back(body);
+  std::sort(bodies.begin(), bodies.end());
+  const std::size_t before = scene_.model.constraints.size();
+  for (const Index i : bodies) {
+    const Joint& joint = scene_.model.bodies[static_cast<std::size_t>(i)].joint;
+    const Index n = dof_count(joint.type), dof = y.has("dof") ? y.at("dof").index() : -1;
+    if (dof >= n) y.at("dof").fail("the joint has " + std::to_string(n) + " degrees of freedom", "0 to " + std::to_string(n - 1));
+    for (Index k = 0; k < n; ++k)
+      for (const int s : {1, -1}) {
+        const std::vector<double>& limit = s > 0 ? joint.lower : joint.upper;
+        if (limit.empty() || !std::isfinite(limit[static_cast<std::size_t>(k)]) || (side != 0 && s != side) || (dof >= 0 && k != dof)) continue;
+        Constraint c;
+        c.kind = Kind::joint_limit;
+        c.a.body = i;
+        c.dof = k;
+        c.side = s;
+        c.name = "joint_limit " + joint.name;
+        if (n > 1) c.name.append(" ").append(std::to_string(k));
+        c.name += s > 0 ? " lower" : " upper";
+        add(y, std::move(c));
+      }
+  }
+  if (scene_.model.constraints.size() == before)
+    y.at(y.has("joint") ? "joint" : "robot").fail("has no such limit", "a joint with a finite limit on that side, or a robot with one");
 }
 
 void SceneLoader::read_coupling(const Yaml& y, Constraint c) {
@@ -192,6 +237,7 @@ void SceneLoader::read_constraint(const Yaml& y) {
     case Kind::contact: y.fail("a contact is no entry of constraints", "an entry of contacts");
     case Kind::joint_friction:
     case Kind::joint_lock: return read_joints(y, c.kind);
+    case Kind::joint_limit: return read_limits(y);
     case Kind::coupling: return read_coupling(y, std::move(c));
     case Kind::general: return read_general(y, std::move(c));
     default: return read_two_ends(y, std::move(c));

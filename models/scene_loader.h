@@ -2,6 +2,7 @@
 //   robots and boxes → constraints → loops closed → what is left open follows the pose → contacts → damping
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "models/contacts.h"
@@ -42,6 +43,7 @@ class SceneLoader {
   void read_constraint(const Yaml& y);
   void read_two_ends(const Yaml& y, Constraint c);
   void read_joints(const Yaml& y, Constraint::Kind kind);
+  void read_limits(const Yaml& y);
   void read_coupling(const Yaml& y, Constraint c);
   void read_general(const Yaml& y, Constraint c);
   void add(const Yaml& y, Constraint c);
@@ -49,6 +51,14 @@ class SceneLoader {
   [[nodiscard]] Index joint_of(const Yaml& y) const;
   [[nodiscard]] const Robot& robot_of(const Yaml& y) const;
   void fill_open(bool loops);
+
+  // scene_assembly.cpp
+  void close_loops_of_scene();
+  [[nodiscard]] bool assembly_options(AssemblyOptions& options) const;
+  void hold(const Yaml& y, std::vector<bool>& held) const;
+  [[noreturn]] void fail_at(Index constraint, const std::string& problem, const std::string& accepted) const;
+  void tell_assembly();
+  void note_moves();
 
   // scene_contacts.cpp
   void read_contacts(const Yaml& y);
@@ -65,6 +75,7 @@ class SceneLoader {
   Index objects_ = 0;
   std::vector<Open> open_;
   std::vector<std::optional<Yaml>> own_damping_;  // per constraint
+  std::map<std::size_t, Yaml> constraint_at_;     // those of the scene: where they stand
   Poses<double> poses_;                           // at scene_.q
 };
 

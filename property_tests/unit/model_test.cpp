@@ -231,7 +231,7 @@ TEST(assembly, refuses_what_cannot_be_closed) {
   Model m = four_bar();
   m.constraints[0].b.placement.translation = {5, 0, 0};
   expect_refusal([&] { (void)assemble(m, VectorX<double>{{0.3, -0.2, 0.1}}, "f"); },
-                 "f: hinge constraint closing: loop cannot be closed from this configuration, residual 0.");
+                 "f: hinge constraint closing: the loop cannot be closed from this pose: open by 0.");
   EXPECT_THROW((void)assemble(m, VectorX<double>::Constant(3, std::nan("")), "f"), ModelError);
 }
 

@@ -183,6 +183,14 @@ void add_every_kind(Model& m, Random& random) {
     c.a.body = body;
     m.constraints.push_back(c);
   }
+  c.kind = Kind::joint_limit;
+  for (const int side : {1, -1})
+    for (const Index body : {0, 4, 14}) {
+      c.a.body = body;
+      c.side = side;
+      c.dof = dof_count(m.bodies[body].joint.type) - 1;
+      m.constraints.push_back(c);
+    }
 }
 
 TEST(Mujoco, agrees_on_every_joint_type_and_every_kind_of_constraint) {
