@@ -33,6 +33,8 @@ MjcfReader::MjcfReader(Model& model, const RobotOptions& options)
 Robot MjcfReader::run() {
   out_.name = options_.robot;
   for (const std::string& said : file_.warnings) findings_.warn("MuJoCo's own", options_.file, "MuJoCo", said, "see MuJoCo's documentation");
+  if (!file_.refused.empty())
+    findings_.note(options_.robot + ": MuJoCo " + mj_versionString() + " refuses the file (" + file_.refused + "); it is read without visuals, sensors and actuators, which M, J and contacts do not need");
   choose_pose();
   check_options();
   check_base();

@@ -4,9 +4,6 @@
 #include <cstring>
 #include <mutex>
 #include <stdexcept>
-
-#include "models/mjcf_xml.h"
-
 namespace delassus {
 namespace {
 
@@ -54,27 +51,37 @@ std::string one_line(std::string text) {
   return text;
 }
 
+struct DeleteFiles {
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
+};
+
+/// `text` under the name of the file, in memory.
+std::unique_ptr<mjVFS, DeleteFiles> in_memory(const std::string& file, const std::string& text) {
+  std::unique_ptr<mjVFS, DeleteFiles> files(new mjVFS);
+  mj_defaultVFS(files.get());
+  if (text.empty() || mj_makeEmptyFileVFS(files.get(), file.c_str(), static_cast<int>(text.size())) != 0)
+    throw std::runtime_error("MuJoCo cannot hold a file of " + std::to_string(text.size()) + " bytes");
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), file.c_str())], text.data(), text.size());
+  return files;
+}
+
 /// Compiles the file on disk, or `text` in its place. @throws std::runtime_error with MuJoCo's message.
 void compile(const std::string& file, const std::string* text, CompiledMjcf& out) {
   std::array<char, 1000> said{};
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  if (text != nullptr) {
-    if (mj_makeEmptyFileVFS(files.get(), file.c_str(), static_cast<int>(text->size())) != 0) throw std::runtime_error("MuJoCo cannot hold a file of " + std::to_string(text->size()) + " bytes");
-    std::memcpy(files->filedata[mj_findFileVFS(files.get(), file.c_str())], text->data(), text->size());
+  std::vector<std::string> warnings;
+  try {
+    const Handlers handlers(warnings);
+    const auto files = text == nullptr ? nullptr : in_memory(file, *text);
+    out.model.reset(mj_loadXML(file.c_str(), files.get(), said.data(), static_cast<int>(said.size())));
+  } catch (const std::exception& e) {
+    throw std::runtime_error(one_line(e.what()));
   }
-  std::string thrown;
-  {
-    const Handlers handlers(out.warnings);
-    try {
-      out.model.reset(mj_loadXML(file.c_str(), text == nullptr ? nullptr : files.get(), said.data(), static_cast<int>(said.size())));
-    } catch (const std::exception& e) {
-      thrown = e.what();
-    }
-  }
-  mj_deleteVFS(files.get());
   const std::string message = one_line(said.data());
-  if (!out.model) throw std::runtime_error(thrown.empty() ? message : one_line(thrown));
+  if (!out.model) throw std::runtime_error(message);
+  out.warnings = std::move(warnings);
   if (!message.empty()) out.warnings.push_back(message);
 }
 
@@ -90,15 +97,19 @@ CompiledMjcf compile_mjcf(const std::string& file) {
   } catch (const std::runtime_error& e) {
     refused = e.what();
   }
+  if (!out.model && xml.empty()) throw ModelError(file, "MuJoCo", refused, accepted);
   if (!out.model) {
-    const bool stripped = xml.strip_missing_files();
+    out.refused = refused;
+    xml.respell_newer();
+    xml.strip_missing_files();
     out.left_out = xml.left_out();
-    if (!stripped) throw ModelError(file, "MuJoCo", refused, accepted);
+    out.site_equalities = xml.site_equalities();
     try {
       out.text = xml.text();
       compile(file, &out.text, out);
     } catch (const std::runtime_error& e) {
-      throw ModelError(file, "MuJoCo", refused + "; without what needs missing files: " + e.what(), accepted);
+      const bool same = refused == e.what();
+      throw ModelError(file, "MuJoCo", refused + (same ? "" : "; without visuals, sensors, actuators and missing files: " + std::string(e.what())), accepted);
     }
   }
   out.full_inertia = xml.full_inertia();

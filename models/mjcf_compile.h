@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algorithms/problem.h"
+#include "models/mjcf_xml.h"
 
 namespace delassus {
 
@@ -22,13 +23,16 @@ struct DeleteMujocoModel {
 struct CompiledMjcf {
   std::unique_ptr<mjModel, DeleteMujocoModel> model;
   std::vector<std::string> warnings;                     ///< MuJoCo's own
+  std::string refused;                                   ///< MuJoCo's message to the file itself, when it took it only as `text`
   std::vector<std::string> left_out;                     ///< assets that are not there, and geoms that need them
+  std::vector<SiteEquality> site_equalities;
   std::string text;                                      ///< what was compiled instead of the file; "" for the file itself
   std::map<std::string, Matrix3<double>> full_inertia;   ///< by body name: `fullinertia` of the file, axes of the body
 };
 
-/// Compiles a file. When files of meshes, height fields or textures are missing, what needs them is taken out and listed,
-/// unless an inertia depends on it. @throws ModelError with MuJoCo's message. One file at a time: MuJoCo's handlers and
+/// Compiles a file. When MuJoCo refuses it, it is tried again without what has no part in M, J and contacts (newer versions
+/// write more of that than 2.2 reads), and without meshes, height fields and textures whose files are missing, which are
+/// listed; an inertia that needs one is an error. @throws ModelError with MuJoCo's message. One file at a time: MuJoCo's handlers and
 /// its last model are global.
 [[nodiscard]] CompiledMjcf compile_mjcf(const std::string& file);
 

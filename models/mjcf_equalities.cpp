@@ -34,8 +34,29 @@ std::string MjcfReader::equality_name(int e) const {
   return given.empty() ? kind + " equality " + std::to_string(e) : given;
 }
 
-void MjcfReader::leave_out(int e, const std::string& why) {
-  findings_.note(options_.robot + ": equality " + in_quotes(equality_name(e)) + " is left out: " + why);
+void MjcfReader::leave_out(const std::string& equality, const std::string& why) {
+  findings_.note(options_.robot + ": equality " + in_quotes(equality) + " is left out: " + why);
+}
+
+void MjcfReader::add_loop(Constraint c, const std::string& equality) {
+  c.name = options_.robot + "/" + equality;
+  c.loop = true;
+  if (c.a.body == c.b.body) return leave_out(equality, c.a.body == ground ? "both ends are fixed to the world" : "both ends are one rigid body");
+  model_.constraints.push_back(std::move(c));
+}
+
+/// The frames of two sites, or their origins, coincide.
+void MjcfReader::add_sites(const SiteEquality& s) {
+  const std::string equality = s.name.empty() ? "sites " + s.site1 + " - " + s.site2 : s.name;
+  if (!s.active) return leave_out(equality, "it is not active");
+  Constraint c;
+  c.kind = s.weld ? Constraint::Kind::weld : Constraint::Kind::point;
+  for (const auto& [site, frame] : {std::pair{&s.site1, &c.a}, {&s.site2, &c.b}}) {
+    const int k = mj_name2id(&m_, mjOBJ_SITE, site->c_str());
+    if (k < 0) fail("equality " + in_quotes(equality), "site " + in_quotes(*site) + " does not exist", "a site of this file");
+    *frame = link_frame(m_.site_bodyid[k], mujoco_pose(m_.site_pos + 3 * k, m_.site_quat + 4 * k));
+  }
+  add_loop(std::move(c), equality);
 }
 
 /// Weld: eq_data has the anchors in body 2 and in body 1, then the orientation of body 2 in body 1. Connect: the anchors in
@@ -45,13 +66,10 @@ void MjcfReader::add_pair(int e) {
   const bool weld = m_.eq_type[e] == mjEQ_WELD;
   static constexpr double none[4] = {1, 0, 0, 0};
   Constraint c;
-  c.name = options_.robot + "/" + equality_name(e);
   c.kind = weld ? Constraint::Kind::weld : Constraint::Kind::point;
   c.a = link_frame(m_.eq_obj1id[e], mujoco_pose(weld ? data + 3 : data, weld ? data + 6 : none));
   c.b = link_frame(m_.eq_obj2id[e], mujoco_pose(weld ? data : data + 3, none));
-  c.loop = true;
-  if (c.a.body == c.b.body) return leave_out(e, c.a.body == ground ? "both ends are fixed to the world" : "both ends are one rigid body");
-  model_.constraints.push_back(std::move(c));
+  add_loop(std::move(c), equality_name(e));
 }
 
 /// q1 − ref1 = polynomial of q2 − ref2, or a constant. In our q, which is qpos: q1 = slope q2 + offset.
@@ -71,7 +89,7 @@ void MjcfReader::add_joint_equality(int e) {
     return;
   }
   const Index b = body_of_[z(j2)];
-  if (a == b) return leave_out(e, "a joint is coupled with itself");
+  if (a == b) return leave_out(equality_name(e), "a joint is coupled with itself");
   const int q2 = m_.jnt_qposadr[j2];
   const Polynomial p(data, qpos_[z(q2)] - m_.qpos0[q2]);
   if (!p.straight)
@@ -129,9 +147,12 @@ void MjcfReader::add_tendon_equality(int e) {
 
 void MjcfReader::add_equalities() {
   bool any = false;
+  if (m_.neq > 0 && (m_.opt.disableflags & mjDSBL_EQUALITY) != 0)
+    findings_.warn("equalities switched off", options_.file, "option", "<flag equality=\"disable\"> switches all equalities off", "they are left out; remove the flag");
   for (int e = 0; e < m_.neq; ++e) {
+    if (m_.opt.disableflags & mjDSBL_EQUALITY) break;
     if (!m_.eq_active[e]) {
-      leave_out(e, "it is not active");
+      leave_out(equality_name(e), "it is not active");
       continue;
     }
     any = true;
@@ -143,6 +164,7 @@ void MjcfReader::add_equalities() {
       default: findings_.warn("equality without rows", options_.file, "equality " + in_quotes(equality_name(e)), "an equality of this type is left out", "connect, weld, joint, tendon");
     }
   }
+  for (const SiteEquality& pair : file_.site_equalities) add_sites(pair), any = true;
   if (any) findings_.note(options_.robot + ": equalities are hard rows; MuJoCo's solref and solimp are left to `damping` of the scene");
 }
 

@@ -43,9 +43,11 @@ class MjcfReader {
   // mjcf_equalities.cpp
   void add_equalities();
   void add_pair(int e);
+  void add_sites(const SiteEquality& s);
   void add_joint_equality(int e);
   void add_tendon_equality(int e);
-  void leave_out(int e, const std::string& why);
+  void leave_out(const std::string& equality, const std::string& why);
+  void add_loop(Constraint c, const std::string& equality);
   [[nodiscard]] std::string equality_name(int e) const;
   bool add_tendon(int t, double factor, std::vector<Constraint::Term>& terms, double& length) const;
 

@@ -17,6 +17,9 @@ std::string attribute(const Element* e, const char* name) {
   return text == nullptr ? "" : text;
 }
 
+/// Included elements have no line of the file.
+std::string line_of(const Element* e) { return e->GetLineNum() > 0 ? " (line " + std::to_string(e->GetLineNum()) + ")" : ""; }
+
 bool is(const Element* e, const char* name) { return std::string_view(e->Name()) == name; }
 
 std::vector<Element*> children(Element* e) {
@@ -117,10 +120,10 @@ void MjcfXml::strip_uses(Element* e, bool massless) {
       }
       const bool geom = is(c, "geom");
       if (geom && (!massless || (c->Attribute("type") != nullptr && attribute(c, "type") != "mesh" && attribute(c, "type") != "hfield")))
-        throw ModelError(file_, "geom with " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + " (line " + std::to_string(c->GetLineNum()) + ")",
+        throw ModelError(file_, "geom with " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c),
                          "the file of this " + std::string(kind) + " is missing and " + (massless ? "the shape is fitted to it" : "the inertia of its body comes from it"),
                          "the file in its place, or <inertial> in the body");
-      if (geom) left_out_.push_back("geom of " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + " (line " + std::to_string(c->GetLineNum()) + ")");
+      if (geom) left_out_.push_back("geom of " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c));
       e->DeleteChild(c);
       c = nullptr;
     }

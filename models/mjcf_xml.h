@@ -11,16 +11,27 @@
 
 namespace delassus {
 
+/// A connect or weld between two sites: newer versions only.
+struct SiteEquality {
+  std::string name, site1, site2;
+  bool weld, active;
+};
+
 class MjcfXml {
  public:
   /// Reads a file and everything it includes. A file that XML cannot be read from is left to MuJoCo's own message.
   explicit MjcfXml(const std::string& file);
+  [[nodiscard]] bool empty() const { return doc_.Error() || doc_.RootElement() == nullptr; }
 
   /// Takes out meshes, height fields, textures and skins whose files are missing, the geoms that are made of them, and
   /// all that refers to them. @returns false when nothing was missing. @throws ModelError when the mass of a body, or a
   /// primitive fitted to a mesh, depends on a missing file.
   bool strip_missing_files();
+  /// Takes out what MuJoCo 2.2 may not know and M, J and contacts do not need (visuals, sensors, actuators, options of the
+  /// solver), and says by its words what newer versions mean by silence: autolimits, assetdir, a short polycoef.
+  void respell_newer();
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+  [[nodiscard]] const std::vector<SiteEquality>& site_equalities() const { return sites_; }
   [[nodiscard]] std::string text() const;
   /// `fullinertia` of every named body whose inertia the file gives, axes of the body.
   [[nodiscard]] std::map<std::string, Matrix3<double>> full_inertia() const;
@@ -36,6 +47,7 @@ class MjcfXml {
   tinyxml2::XMLDocument doc_;
   std::map<std::string, std::map<std::string, bool>> gone_;  ///< kind of asset → names
   std::vector<std::string> left_out_;
+  std::vector<SiteEquality> sites_;
 };
 
 }  // namespace delassus

@@ -348,11 +348,40 @@ TEST(Mjcf, missing_meshes_are_left_out_when_no_inertia_needs_them) {
   };
   const std::string given = with("<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>");
   const Read r = read(options(given));
-  EXPECT_EQ(r.robot.warnings.size(), 3u);
+  EXPECT_EQ(r.robot.warnings.size(), 2u);  // the mesh and its geom; textures do not matter
   EXPECT_EQ(r.model.bodies[0].shapes.size(), 1u);
   EXPECT_EQ(r.model.bodies[0].mass, 1);
   expect_agreement("without meshes", options(given), r);
   EXPECT_NE(refusal(with("")).find("inertia of its body"), std::string::npos);
+}
+
+// What later versions write (options, sensors, ranges without `limited`) is read without what has no part in M and J.
+TEST(Mjcf, newer_files_are_read_without_what_does_not_matter) {
+  const std::string limb = "<inertial pos=\"0 0 0.1\" mass=\"1\" diaginertia=\"1 1 1\"/><site name=\"";
+  const std::string file = mjcf("newer", "<option integrator=\"implicitfast\"><flag island=\"enable\"/></option><size memory=\"1M\"/><compiler angle=\"radian\"/>"
+      "<worldbody><light type=\"spot\"/><body name=\"a\" gravcomp=\"1\"><freejoint align=\"false\"/>" + limb + "s\" pos=\"0.1 0.2 0.3\"/>"
+      "<body name=\"b\"><joint name=\"j\" range=\"-1 1\" actuatorfrcrange=\"-1 1\"/>" + limb + "t\" pos=\"0.4 0 0\" euler=\"0.1 0.2 0.3\"/>"
+      "<body name=\"c\"><joint name=\"k\" axis=\"1 0 0\"/>" + limb + "u\"/></body></body></body></worldbody>"
+      "<equality><connect name=\"p\" site1=\"s\" site2=\"t\"/><weld site1=\"u\" site2=\"s\" active=\"false\"/><joint joint1=\"j\" joint2=\"k\" polycoef=\"0.5\"/></equality>"
+      "<actuator><position joint=\"j\" dampratio=\"1\"/></actuator>");
+  Read r = read(options(file));
+  EXPECT_TRUE(said(r.robot.notes, "refuses the file"));
+  EXPECT_EQ(body(r.model, "b").joint.upper, std::vector<double>{1});
+  EXPECT_EQ(r.robot.mimics.at(0).multiplier, 1);
+  EXPECT_EQ(r.robot.mimics.at(0).offset, 0.5);
+  ASSERT_EQ(r.model.constraints.size(), 2u);
+  const Constraint& p = constraint(r.model, "p");
+  EXPECT_EQ(p.kind, Kind::point);
+  EXPECT_EQ(p.a.placement.translation, Vector3<double>(0.1, 0.2, 0.3));
+  EXPECT_EQ(p.b.body, r.robot.links.at("b").body);
+  EXPECT_TRUE(said(r.robot.notes, "\"sites u - s\" is left out: it is not active"));
+}
+
+TEST(Mjcf, equalities_that_a_flag_switches_off_are_left_out_with_a_warning) {
+  const Read r = read(options(mjcf("switched", "<option><flag equality=\"disable\"/></option>" + std::string(fourbar))));
+  EXPECT_TRUE(r.model.constraints.empty());
+  ASSERT_EQ(r.robot.warnings.size(), 1u);
+  EXPECT_EQ(r.robot.warnings[0].kind, "equalities switched off");
 }
 
 }  // namespace
