@@ -9,27 +9,16 @@
 // runs the program unchanged, then mutants 1 … N that are compiled in (mutant_batch.py), each in a process of its own that
 // inherits the references' answers. For each a line «number outcome reason». What killed last is tried first.
 // Exit code 1: the unchanged one does not pass.
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/time.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
-#include <functional>
-#include <iostream>
 #include <sstream>
 #include <string>
-
-#include <gtest/gtest.h>
 
 #include "generators/build.h"
 #include "property_tests/allocations.h"
 #include "property_tests/kernels.h"
+#include "property_tests/killing.h"
 #include "property_tests/known.h"
 #include "property_tests/krylov.h"
 #include "property_tests/laws.h"
@@ -40,9 +29,6 @@
 #include "property_tests/refinement_model.h"
 #include "property_tests/reuse.h"
 #include "property_tests/summary.h"
-
-/// Which of the mutants compiled in runs; 0: none.
-int delassus_mutant = 0;
 
 namespace {
 
@@ -62,10 +48,8 @@ constexpr Pinned problems[] = {
 constexpr Pinned plans[] = {{"generic", 5, 1}, {"generic", 13, 1},     {"lattice", 16, 1},      {"comb", 20, 1},    {"random_tree", 24, 1}, {"ring", 12, 1},
                             {"humanoid", 26, 1}, {"several_trees", 4, 1}, {"no_rows", 4, 1}, {"no_bodies", 0, 1}};
 
-/// What does not hold, in words; empty: everything does.
-using Words = std::string;
-
-using Check = std::function<Words()>;
+using laws::Check;
+using laws::Words;
 
 Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Case& c) {
   const laws::Outcome o = laws::check(law, op, c);
@@ -74,42 +58,6 @@ Words law_broken(const laws::LawRow& law, const OperatorRow& op, const laws::Cas
   laws::print(words, o);
   return words.str();
 }
-
-/// What a unit test says first; empty: it passes.
-class FirstFailure : public testing::EmptyTestEventListener {
- public:
-  static Words of(const std::string& test) {
-    static FirstFailure* const one = listening();
-    one->words_.clear();
-    testing::GTEST_FLAG(filter) = test;
-    return RUN_ALL_TESTS() == 0 ? "" : test + ": " + one->words_;
-  }
-  /// Names of the unit tests that are compiled in, of the suites whose names begin so.
-  static std::vector<std::string> tests(std::string_view begin) {
-    std::vector<std::string> names;
-    const testing::UnitTest& all = *testing::UnitTest::GetInstance();
-    for (int k = 0; k < all.total_test_suite_count(); ++k)
-      for (int l = 0; std::string_view(all.GetTestSuite(k)->name()).starts_with(begin) && l < all.GetTestSuite(k)->total_test_count(); ++l)
-        names.push_back(std::string(all.GetTestSuite(k)->name()) + "." + all.GetTestSuite(k)->GetTestInfo(l)->name());
-    return names;
-  }
-
- private:
-  static FirstFailure* listening() {
-    int count = 1;
-    char program[] = "mutant_killer", *arguments[] = {program, nullptr};
-    testing::InitGoogleTest(&count, arguments);
-    testing::TestEventListeners& all = testing::UnitTest::GetInstance()->listeners();
-    delete all.Release(all.default_result_printer());
-    auto* const one = new FirstFailure;
-    all.Append(one);  // which owns it
-    return one;
-  }
-  void OnTestPartResult(const testing::TestPartResult& r) override {
-    if (r.failed() && words_.empty()) words_ = r.summary();
-  }
-  Words words_;
-};
 
 /// Exact laws of every problem first: they need no bound and know no excuse.
 std::vector<Check> checks(std::vector<std::string_view> names) {
@@ -153,7 +101,7 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
   for (const char* family : {"mixed_damping", "mixed_contacts", "stiff_redundant", "unequal_stack", "quadruped_feet"})
     if (of_square_root) all.push_back([c = laws::make_case(family, 6, 1)] { return laws::square_root_wrong(c); });
   for (const std::string_view suite : suites)
-    for (const std::string& test : FirstFailure::tests(suite)) all.push_back([test] { return FirstFailure::of(test); });
+    for (Check& test : laws::unit_tests(suite)) all.push_back(std::move(test));
   for (const laws::Case& c : cases)
     if (of_kernels && c.exact) all.push_back([&c] { return laws::kernel_wrong(c); });
   for (const laws::Case& c : cases)
@@ -174,64 +122,6 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
   return all;
 }
 
-/// What a child leaves behind.
-struct Last {
-  std::size_t check;
-  char words[200];
-};
-
-/// A check may take three seconds of processor time where a mutant runs; unchanged, none takes a tenth of it.
-bool all_hold(const std::vector<Check>& all, Last& last) {
-  const itimerval limit{{0, 0}, {3, 0}};
-  for (last.check = 0; last.check < all.size(); ++last.check) {
-    if (delassus_mutant != 0) setitimer(ITIMER_PROF, &limit, nullptr);
-    const Words words = all[last.check]();
-    if (words.empty()) continue;
-    std::strncpy(last.words, words.c_str(), sizeof(last.words) - 1);
-    return false;
-  }
-  return true;
-}
-
-double cpu_seconds(int who) {
-  rusage used{};
-  getrusage(who, &used);
-  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-}
-
-/// Runs a mutant in a child; its wait status.
-int run_child(int mutant, const std::vector<Check>& all, Last& last) {
-  last = {};
-  const pid_t child = fork();
-  if (child == 0) {
-    alarm(600);
-    delassus_mutant = mutant;
-    _exit(all_hold(all, last) ? EXIT_SUCCESS : EXIT_FAILURE);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return status;
-}
-
-const char* outcome(int status) {
-  if (WIFEXITED(status)) return WEXITSTATUS(status) == 0 ? "survived" : WEXITSTATUS(status) == 1 ? "failed" : "crashed";
-  return WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM ? "time" : "crashed";
-}
-
-int kill_mutants(int count, std::vector<Check> all) {
-  Last& last = *static_cast<Last*>(mmap(nullptr, sizeof(Last), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  const int usual = run_child(0, all, last);
-  const double unchanged = cpu_seconds(RUSAGE_CHILDREN);
-  std::cout << "0 " << outcome(usual) << ' ' << unchanged << " s, and once " << cpu_seconds(RUSAGE_SELF) << " s" << std::endl;
-  for (int mutant = 1; mutant <= count; ++mutant) {
-    const int status = run_child(mutant, all, last);
-    if (last.check < all.size()) std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(last.check), all.begin() + static_cast<std::ptrdiff_t>(last.check) + 1);
-    std::replace(std::begin(last.words), std::end(last.words), '\n', ' ');
-    std::cout << mutant << ' ' << outcome(status) << ' ' << last.words << std::endl;
-  }
-  return EXIT_SUCCESS;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -241,11 +131,5 @@ int main(int argc, char** argv) {
     if (std::string_view(argv[k]) == "--mutants" && k + 1 < argc) count = std::atoi(argv[++k]);
     else names.emplace_back(argv[k]);
   laws::count_allocations();
-  const std::vector<Check> all = checks(names);
-  Last last{};
-  if (!all_hold(all, last)) {
-    std::cout << "0 failed " << last.words << std::endl;
-    return EXIT_FAILURE;
-  }
-  return kill_mutants(count, all);
+  return laws::kill_mutants(count, checks(names), 3);  // unchanged, no check takes a tenth of the three seconds
 }

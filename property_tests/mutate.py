@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Mutation testing of the operators' sources: one change at a time (mutations.py) in a copy of a commit, which the program
-mutant_killer must notice.
+"""Mutation testing of the sources of the operators and of the way in: one change at a time (mutations.py) in a copy of a
+commit, which the program mutant_killer (operators) or models_killer (the way in) must notice.
 
     property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--batch N]
                              [--json FILE [--resume | --again]] [--list]
@@ -42,6 +42,24 @@ FILES = {
     **dict.fromkeys(["weight_root.cpp", "weight_root.h", "mass_root.cpp", "front_plan.cpp", "householder.h", "square_root_factor.cpp",
                      "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr"), "lcaba_qr.cpp": "lcaba_qr"}
 
+# Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
+WAY_IN = {
+    **dict.fromkeys(["box_contacts.cpp", "contacts.cpp"], "BoxContacts ContactLaws SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
+                    "SceneLaws SceneFile BadScene Scenes Description"),
+    **dict.fromkeys(["urdf.cpp", "urdf_check.cpp", "robot.cpp"], "Urdf BadUrdf Description SceneLaws Scenes"),
+    "kinematics.cpp": "kinematics moving integrate rows SceneLaws Description", "constraints.cpp": "rows closure moving model SceneLaws",
+    "loop_closing.cpp": "closure assembly Loop SceneFile Scenes", "model.cpp": "model regularity kinematics", "regularity.cpp": "regularity model"}
+FILES.update(WAY_IN)
+
+
+def killer_of(name):
+    return "models_killer" if name in WAY_IN else "mutant_killer"
+
+
+def folder_of(name):
+    return next((f for f in ("algorithms", "models") if os.path.exists(os.path.join(ROOT, f, name))), "models")
+
 
 def read_equivalent(path):
     """{(file, before, after): reason}; an entry is `file`, then `- before` and `+ after` lines, then `= reason` for all of them."""
@@ -71,7 +89,8 @@ class Copy:
         subprocess.run(["rm", "-rf", fresh], check=True)
         os.makedirs(fresh)
         subprocess.run(["tar", "-x", "-C", fresh], input=archive, check=True)
-        shutil.copy(os.path.join(HERE, "mutant_killer.cpp"), os.path.join(fresh, "property_tests"))
+        for name in ("mutant_killer.cpp", "models_killer.cpp", "killing.cpp", "killing.h"):
+            shutil.copy(os.path.join(HERE, name), os.path.join(fresh, "property_tests"))
         self.fewer_scalars(os.path.join(fresh, "algorithms"))
         with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
             f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n"
@@ -112,23 +131,23 @@ class Copy:
                             "-DCMAKE_EXE_LINKER_FLAGS=-no-pie -Wl,--unresolved-symbols=ignore-all"], check=True, stdout=subprocess.DEVNULL)
 
     def read(self, name):
-        return open(os.path.join(self.tree, "algorithms", name), encoding="utf-8").read()
+        return open(os.path.join(self.tree, folder_of(name), name), encoding="utf-8").read()
 
     def write(self, name, text):
-        open(os.path.join(self.tree, "algorithms", name), "w", encoding="utf-8").write(text)
+        open(os.path.join(self.tree, folder_of(name), name), "w", encoding="utf-8").write(text)
 
-    def make(self):
-        return subprocess.run(["ninja", "-j1", "-C", self.build, "mutant_killer"], stdout=subprocess.PIPE,
+    def make(self, name):
+        return subprocess.run(["ninja", "-j1", "-C", self.build, killer_of(name)], stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, errors="replace")
 
-    def kill(self, operators, count=0):
+    def kill(self, name, count=0):
         """[(outcome, what the killer said)] of the program unchanged, then of its mutants 1 … count."""
         def limits():
             resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        program = os.path.join(self.build, "property_tests", "mutant_killer")
-        done = subprocess.run([program, "--mutants", str(count)] + operators.split(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                              text=True, errors="replace", preexec_fn=limits)
+        program = os.path.join(self.build, "property_tests", killer_of(name))
+        done = subprocess.run([program, "--mutants", str(count)] + FILES[name].split(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              text=True, errors="replace", preexec_fn=limits, cwd=self.tree)
         said = [tuple(line.split(" ", 2)[1:]) for line in done.stdout.split("\n") if line]
         if count and len(said) != count + 1:
             raise RuntimeError("the killer ended with %d: %s" % (done.returncode, done.stdout[-500:]))
@@ -142,9 +161,9 @@ def judge(copy, name, text, group):
     if "float" not in FILES[name] and "preconditioned" not in FILES[name]:
         text = text.replace(" DELASSUS_INSTANTIATE(float)", "")
     copy.write(name, mutant_batch.compose(name, text, group))
-    made = copy.make()
+    made = copy.make(name)
     if made.returncode == 0:
-        for mutant, (outcome, by) in zip(group, copy.kill(FILES[name], len(group))):
+        for mutant, (outcome, by) in zip(group, copy.kill(name, len(group))):
             mutant["outcome"], mutant["by"] = outcome, by
         return
     guilty = mutant_batch.blamed(made.stdout) if len(group) > 1 else {1}
@@ -227,8 +246,8 @@ def run(options, equivalent):
         of_file = [m for m in todo if m["file"] == name]
         if not of_file:
             continue
-        made = copy.make()
-        unchanged = copy.kill(FILES[name]) if made.returncode == 0 else [("compiler", made.stdout[-2000:])]
+        made = copy.make(name)
+        unchanged = copy.kill(name) if made.returncode == 0 else [("compiler", made.stdout[-2000:])]
         if unchanged[0][0] != "survived":
             print("the unchanged tree does not pass:", name, *unchanged[0])
             return 2
@@ -252,7 +271,7 @@ def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--work", help="folder for the copy and its build")
     p.add_argument("--commit", default="HEAD", help="whose sources are mutated (HEAD)")
-    p.add_argument("--files", nargs="+", default=list(FILES), choices=list(FILES))
+    p.add_argument("--files", nargs="+", default=[f for f in FILES if os.path.exists(os.path.join(ROOT, folder_of(f), f))], choices=list(FILES), metavar="FILE")
     p.add_argument("--sample", type=int, default=0, help="that many, drawn at random; 0: all")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--batch", type=int, default=40, help="mutants in one program")
