@@ -79,10 +79,15 @@ def read_equivalent(path):
 
 class Copy:
     """A copy of a commit, with the killer of the working tree and a build of its own. Of the operators' files little is
-    compiled, and that with little optimisation: double and Rational; float for factors narrower than double."""
+    compiled, and that with little optimisation: double and Rational; float for factors narrower than double. For the way
+    in everything is built as in the tree, the mutated files with little optimisation."""
 
-    def __init__(self, work, commit):
-        self.tree, self.build = os.path.join(work, "tree"), os.path.join(work, "build")
+    def __init__(self, work, commit, files):
+        self.way_in = [name for name in files if name in WAY_IN]
+        if self.way_in and len(self.way_in) < len(files):
+            sys.exit("mutate.py: files of operators and of the way in need two runs, each with a folder of its own")
+        self.tree = os.path.join(work, "tree")
+        self.build = os.path.join(self.tree, "build", "release") if self.way_in else os.path.join(work, "build")
         os.makedirs(self.tree, exist_ok=True)
         archive = subprocess.run(["git", "-C", ROOT, "archive", commit], stdout=subprocess.PIPE, check=True).stdout
         fresh = os.path.join(work, "fresh")
@@ -91,10 +96,14 @@ class Copy:
         subprocess.run(["tar", "-x", "-C", fresh], input=archive, check=True)
         for name in ("mutant_killer.cpp", "models_killer.cpp", "killing.cpp", "killing.h"):
             shutil.copy(os.path.join(HERE, name), os.path.join(fresh, "property_tests"))
-        self.fewer_scalars(os.path.join(fresh, "algorithms"))
-        with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
-            f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n"
-                    "target_compile_options(delassus PRIVATE -O1)\ntarget_compile_definitions(delassus PRIVATE _GLIBCXX_ASSERTIONS)\n")
+        for name in self.way_in:  # what is not mutated comes from the compiler's cache
+            with open(os.path.join(fresh, folder_of(name), "CMakeLists.txt"), "a", encoding="utf-8") as f:
+                f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1\")\n" % name)
+        if not self.way_in:
+            self.fewer_scalars(os.path.join(fresh, "algorithms"))
+            with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
+                f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n"
+                        "target_compile_options(delassus PRIVATE -O1)\ntarget_compile_definitions(delassus PRIVATE _GLIBCXX_ASSERTIONS)\n")
         self.take_over(fresh)
 
     def take_over(self, fresh):
@@ -124,7 +133,9 @@ class Copy:
             open(path, "w", encoding="utf-8").write(text)
 
     def configure(self):
-        if not os.path.exists(os.path.join(self.build, "build.ninja")):
+        if self.way_in:
+            subprocess.run(["cmake", "--preset", "release"], check=True, stdout=subprocess.DEVNULL, cwd=self.tree)
+        elif not os.path.exists(os.path.join(self.build, "build.ninja")):
             subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCCACHE=OFF",
                             "-DCMAKE_CXX_FLAGS=-O2 -march=native -w",
                             # scalars that are not compiled are not called either
@@ -231,7 +242,7 @@ def judged_before(options, todo, equivalent):
 
 
 def run(options, equivalent):
-    copy = Copy(options.work, options.commit)
+    copy = Copy(options.work, options.commit, options.files)
     texts = {name: copy.read(name) for name in options.files}
     todo = chosen(options, texts)
     if options.list:
