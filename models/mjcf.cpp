@@ -267,7 +267,9 @@ Robot add_mjcf(Model& model, const RobotOptions& options) { return MjcfReader(mo
 
 MjcfSource mjcf_source(const std::string& file) {
   CompiledMjcf compiled = compile_mjcf(file);
-  return {std::move(compiled.text), std::move(compiled.full_inertia)};
+  MjcfSource out{std::move(compiled.text), std::move(compiled.full_inertia), {}};
+  for (const SiteEquality& s : compiled.site_equalities) out.sites.push_back({name_of(s), s.site1, s.site2, s.weld});
+  return out;
 }
 
 }  // namespace delassus

@@ -27,8 +27,13 @@ Robot add_mjcf(Model& model, const RobotOptions& options);
 
 /// What `add_mjcf` reads, for those who compare it with MuJoCo's own numbers.
 struct MjcfSource {
+  struct Sites {
+    std::string constraint, a, b;  ///< name of the constraint less its robot; the two sites
+    bool weld;
+  };
   std::string text;                                     ///< compiled in the file's place; "" where the file itself is
   std::map<std::string, Matrix3<double>> full_inertia;  ///< by body name, axes of the body
+  std::vector<Sites> sites;                             ///< equalities between sites: not in `text`
 };
 /// @throws ModelError as add_mjcf.
 [[nodiscard]] MjcfSource mjcf_source(const std::string& file);

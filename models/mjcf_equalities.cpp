@@ -47,7 +47,7 @@ void MjcfReader::add_loop(Constraint c, const std::string& equality) {
 
 /// The frames of two sites, or their origins, coincide.
 void MjcfReader::add_sites(const SiteEquality& s) {
-  const std::string equality = s.name.empty() ? "sites " + s.site1 + " - " + s.site2 : s.name;
+  const std::string equality = name_of(s);
   if (!s.active) return leave_out(equality, "it is not active");
   Constraint c;
   c.kind = s.weld ? Constraint::Kind::weld : Constraint::Kind::point;
@@ -103,12 +103,14 @@ void MjcfReader::add_joint_equality(int e) {
   model_.constraints.push_back(std::move(c));
 }
 
-/// Adds factor · (rate of a fixed tendon) to the terms, and gives its length less that at qpos0. False: it is spatial.
+/// Adds factor · (rate of a fixed tendon) to the terms, and gives its length less that at qpos0. False: it is spatial, or
+/// over joints with several coordinates.
 bool MjcfReader::add_tendon(int t, double factor, std::vector<Constraint::Term>& terms, double& length) const {
   length = 0;
   for (int k = m_.tendon_adr[t]; k < m_.tendon_adr[t] + m_.tendon_num[t]; ++k) {
     if (m_.wrap_type[k] != mjWRAP_JOINT) return false;
     const int j = m_.wrap_objid[k], q = m_.jnt_qposadr[j];
+    if (m_.jnt_type[j] != mjJNT_HINGE && m_.jnt_type[j] != mjJNT_SLIDE) return false;
     const Index body = body_of_[z(j)];
     length += m_.wrap_prm[k] * (qpos_[z(q)] - m_.qpos0[q]);
     bool there = false;
@@ -131,7 +133,7 @@ void MjcfReader::add_tendon_equality(int e) {
   bool fixed = add_tendon(t1, 1, c.terms, length1);
   if (fixed && t2 >= 0) fixed = add_tendon(t2, 0, unused, length2);
   if (!fixed) {
-    findings_.warn("spatial tendon", options_.file, element, "holds the length of a tendon through space, which has no row here; it is left out", "fixed tendons, or constraints of the scene");
+    findings_.warn("spatial tendon", options_.file, element, "holds the length of a tendon through space, or over a ball joint, which has no row here; it is left out", "fixed tendons over hinges and slides, or constraints of the scene");
     return;
   }
   const Polynomial p(data, length2);

@@ -1,8 +1,9 @@
 #include "models/mjcf_xml.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <set>
+#include <fstream>
 
 #include "models/message.h"
 
@@ -28,9 +29,14 @@ std::vector<Element*> children(Element* e) {
   return out;
 }
 
+/// A file, and not the line that a checkout without Git LFS leaves in its place.
 bool there(const fs::path& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error);
+  if (!fs::is_regular_file(path, error)) return false;
+  constexpr std::string_view pointer = "version https://git-lfs";
+  std::array<char, pointer.size()> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  return std::string_view(start.data(), start.size()) != pointer;
 }
 
 /// The last value of a compiler option; later ones win in MuJoCo.

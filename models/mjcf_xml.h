@@ -17,6 +17,8 @@ struct SiteEquality {
   bool weld, active;
 };
 
+[[nodiscard]] inline std::string name_of(const SiteEquality& s) { return s.name.empty() ? "sites " + s.site1 + " - " + s.site2 : s.name; }
+
 class MjcfXml {
  public:
   /// Reads a file and everything it includes. A file that XML cannot be read from is left to MuJoCo's own message.

@@ -163,6 +163,21 @@ MatrixX<double> MjcfWitness::rows(Index equality) const {
   return weld;
 }
 
+MatrixX<double> MjcfWitness::site_rows(const std::string& a, const std::string& b, bool weld) const {
+  const State& s = *state_;
+  RowMajor moving[2], turning[2];
+  int ids[2] = {mj_name2id(s.m.get(), mjOBJ_SITE, a.c_str()), mj_name2id(s.m.get(), mjOBJ_SITE, b.c_str())};
+  for (int k = 0; k < 2; ++k) {
+    if (ids[k] < 0) return {};
+    moving[k].resize(3, s.m->nv), turning[k].resize(3, s.m->nv);
+    mj_jacSite(s.m.get(), s.d.get(), moving[k].data(), turning[k].data(), ids[k]);
+  }
+  const Matrix3<double> R = matrix(s.d->site_xmat + 9 * ids[0]).transpose();
+  Matrix out(6, s.T.cols());
+  out << R * (turning[0] - turning[1]) * s.T, R * (moving[0] - moving[1]) * s.T;
+  return weld ? out : Matrix(out.bottomRows(3));
+}
+
 std::vector<Index> MjcfWitness::curved() const {
   const mjModel& m = *state_->m;
   std::vector<Index> out;

@@ -33,6 +33,8 @@ class MjcfWitness {
   [[nodiscard]] MatrixX<double> M() const;  ///< dofs × dofs of the model; zero outside the bodies
   /// Rows of an active equality by its number in the file, in our ν; empty when MuJoCo has none for it.
   [[nodiscard]] MatrixX<double> rows(Index equality) const;
+  /// Rows of two sites whose origins (3 rows) or frames (6) coincide, in our ν and the axes of the first: by mj_jac.
+  [[nodiscard]] MatrixX<double> site_rows(const std::string& a, const std::string& b, bool weld) const;
   /// Name of an equality in the file; "" for none.
   [[nodiscard]] std::string name(Index equality) const;
   /// Joints whose value enters an equality by a polynomial of higher degree.

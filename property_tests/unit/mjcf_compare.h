@@ -57,6 +57,11 @@ inline MjcfRatios compare_mjcf(const RobotOptions& options, const Model& model, 
       out.J = std::max(out.J, worst_entry(d.J.middleRows(row, n), witness.rows(e), bounds.J.middleRows(row, n)));
       out.rows += n;
     }
+    for (const MjcfSource::Sites& s : source.sites)
+      if (c.name == options.robot + "/" + s.constraint) {
+        out.J = std::max(out.J, worst_entry(d.J.middleRows(row, n), witness.site_rows(s.a, s.b, s.weld), bounds.J.middleRows(row, n)));
+        out.rows += n;
+      }
     row += n;
   }
   if (out.rows != row) out.J = std::numeric_limits<double>::infinity();

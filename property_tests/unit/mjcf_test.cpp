@@ -352,6 +352,8 @@ TEST(Mjcf, missing_meshes_are_left_out_when_no_inertia_needs_them) {
   EXPECT_EQ(r.model.bodies[0].shapes.size(), 1u);
   EXPECT_EQ(r.model.bodies[0].mass, 1);
   expect_agreement("without meshes", options(given), r);
+  write("missing.stl", "version https://git-lfs.github.com/spec/v1\n");
+  EXPECT_EQ(read(options(given)).robot.warnings.size(), 2u);
   EXPECT_NE(refusal(with("")).find("inertia of its body"), std::string::npos);
 }
 
@@ -374,7 +376,15 @@ TEST(Mjcf, newer_files_are_read_without_what_does_not_matter) {
   EXPECT_EQ(p.kind, Kind::point);
   EXPECT_EQ(p.a.placement.translation, Vector3<double>(0.1, 0.2, 0.3));
   EXPECT_EQ(p.b.body, r.robot.links.at("b").body);
+  expect_agreement("newer", options(file), r);
   EXPECT_TRUE(said(r.robot.notes, "\"sites u - s\" is left out: it is not active"));
+}
+
+TEST(Mjcf, tendons_without_a_row_are_left_out_with_a_warning) {
+  const Read r = read(options(mjcf("tendons", std::string(tree) + "<tendon><fixed name=\"t\"><joint joint=\"knee\" coef=\"1\"/><joint joint=\"wrist\" coef=\"1\"/></fixed></tendon><equality><tendon tendon1=\"t\"/></equality>")));
+  EXPECT_TRUE(r.model.constraints.empty());
+  ASSERT_EQ(r.robot.warnings.size(), 1u);
+  EXPECT_EQ(r.robot.warnings[0].kind, "spatial tendon");
 }
 
 TEST(Mjcf, equalities_that_a_flag_switches_off_are_left_out_with_a_warning) {
