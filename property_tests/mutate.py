@@ -5,6 +5,7 @@ commit, which the program mutant_killer (operators) or models_killer (the way in
     property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--batch N]
                              [--json FILE [--resume | --again]] [--list]
     property_tests/mutate.py --table --json FILE
+    property_tests/mutate.py --work DIR --files ... --faults FILE     faults seeded by hand: kind, file, and the test that notices
 
 The copy and its build stand in DIR; the working tree is only read. The mutants of a file are built many at once
 (mutant_batch.py). A mutant is killed by a failing or crashing killer or by its time limit; one that does not compile is
@@ -46,10 +47,12 @@ FILES = {
 WAY_IN = {
     **dict.fromkeys(["box_contacts.cpp", "contacts.cpp"], "BoxContacts ContactLaws SceneLaws SceneFile Scenes"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
-                    "SceneLaws SceneFile BadScene Scenes Description"),
-    **dict.fromkeys(["urdf.cpp", "urdf_check.cpp", "robot.cpp"], "Urdf BadUrdf Description SceneLaws Scenes"),
+                    "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description"),
+    **dict.fromkeys(["urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
+                     "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field SceneLaws Scenes"),
     "kinematics.cpp": "kinematics moving integrate rows SceneLaws Description", "constraints.cpp": "rows closure moving model SceneLaws",
-    "loop_closing.cpp": "closure assembly Loop SceneFile Scenes", "model.cpp": "model regularity kinematics", "regularity.cpp": "regularity model"}
+    **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
+    "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}
 FILES.update(WAY_IN)
 
 
@@ -75,6 +78,30 @@ def read_equivalent(path):
         elif line and not line.startswith("#"):
             name = line.strip()
     return entries
+
+
+def read_faults(path, texts):
+    """Faults seeded by hand: like the entries of read_equivalent, the kind of fault behind `= `. Each changes one line."""
+    out = []
+    for (name, before, after), kind in read_equivalent(path).items():
+        if name not in texts:
+            continue
+        lines = texts[name].split("\n")
+        places = [k for k, line in enumerate(lines) if line.strip() == before]
+        if len(places) != 1:
+            sys.exit("mutate.py: %s: %d lines of %s read: %s" % (path, len(places), name, before))
+        line = lines[places[0]]
+        out.append({"file": name, "line": places[0] + 1, "kind": kind, "before": before, "after": after,
+                    "text": line[:len(line) - len(line.lstrip())] + after})
+    return out
+
+
+def fault_table(done):
+    print("| kind | source | noticed by |\n|---|---|---|")
+    for m in done:
+        by = "**nobody**" if m["outcome"] == "survived" else "`%s`" % m["by"].split(":")[0] if m["outcome"] == "failed" else m["outcome"]
+        print("| %s | `%s` | %s |" % (m["kind"], m["file"], by))
+    return sum(m["outcome"] == "survived" for m in done)
 
 
 class Copy:
@@ -208,6 +235,8 @@ def summary(done, equivalent):
 
 def chosen(options, texts):
     every = []
+    if options.faults:
+        return read_faults(options.faults, texts)
     for name in options.files:
         spans = mutant_batch.bodies(texts[name])
         every += [m for m in mutants(name, texts[name]) if mutant_batch.place(texts[name], spans, m)]
@@ -275,7 +304,7 @@ def run(options, equivalent):
             print("%s:%d-%d %d mutants, %d not compiled, %d survived, %d by time, %.0f s" % (name, group[0]["line"], group[-1]["line"],
                   len(group), count("compiler"), count("survived"), count("time"), time.time() - start), flush=True)
         copy.write(name, texts[name])
-    return 1 if summary(done, equivalent) else 0
+    return 1 if (fault_table(done) if options.faults else summary(done, equivalent)) else 0
 
 
 def main():
@@ -289,6 +318,7 @@ def main():
     p.add_argument("--json", help="all outcomes, rewritten after every batch")
     p.add_argument("--resume", action="store_true", help="keep the outcomes in --json")
     p.add_argument("--again", action="store_true", help="the same, but judge its unexplained survivors again")
+    p.add_argument("--faults", help="judge the faults of this file (property_tests/seeded_faults.txt) instead of every mutant")
     p.add_argument("--table", action="store_true", help="print what --json holds and stop")
     p.add_argument("--list", action="store_true", help="print the mutants and stop")
     options = p.parse_args()
