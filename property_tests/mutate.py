@@ -125,7 +125,7 @@ class Copy:
             shutil.copy(os.path.join(HERE, name), os.path.join(fresh, "property_tests"))
         for name in self.way_in:  # what is not mutated comes from the compiler's cache
             with open(os.path.join(fresh, folder_of(name), "CMakeLists.txt"), "a", encoding="utf-8") as f:
-                f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1\")\n" % name)
+                f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1;-UNDEBUG\")\n" % name)
         if not self.way_in:
             self.fewer_scalars(os.path.join(fresh, "algorithms"))
             with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:

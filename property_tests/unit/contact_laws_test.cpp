@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "models/box_contacts.h"
 #include "models/contacts.h"
 #include "property_tests/unit/path_sums.h"
 
@@ -161,12 +162,12 @@ void for_each_pair(const std::function<void(const Pair&, double gap, Random&, co
         const Shape b = random_shape(second, r);
         Shape a = random_shape(first, r);
         if (seed % 4 == 0) {  // faces and axes that rest on each other
-          a.placement.rotation = b.placement.rotation * Eigen::AngleAxisd(r.number(0.2, 0.6), V3::UnitX()).toRotationMatrix();
+          a.placement.rotation = b.placement.rotation * Eigen::AngleAxisd(r.number(0.2, 0.6), V3::Unit(seed / 4 % 3)).toRotationMatrix();
         }
         const double gap = seed % 3 == 0 ? r.number(0.1, 0.9) * margin : -r.number(0.1, 2) * margin;
         const bool capsule_on_box = (first == Kind::capsule && second == Kind::box) || (first == Kind::box && second == Kind::capsule);
         const V3 along = (first == Kind::capsule ? a : b).placement.rotation.col(2);  // so that an end gets there
-        const V3 direction = capsule_on_box ? V3((along + 0.3 * r.vector()).normalized()) : seed % 4 == 0 ? V3(b.placement.rotation * (V3::UnitX() + 0.2 * r.vector()).normalized()) : r.unit();
+        const V3 direction = capsule_on_box ? V3((along + 0.3 * r.vector()).normalized()) : seed % 4 == 0 ? V3(b.placement.rotation * (V3::Unit(seed / 4 % 3) + 0.2 * r.vector()).normalized()) : r.unit();
         law(pair_of(brought_to(a, b, direction, gap), b, r), gap, r,
             "kinds " + std::to_string(static_cast<int>(first)) + " and " + std::to_string(static_cast<int>(second)) + ", seed " + std::to_string(seed));
         if (testing::Test::HasFailure()) return;
@@ -328,6 +329,29 @@ TEST(ContactLaws, the_points_kept_reach_farthest) {
     EXPECT_TRUE(a.size[1] * a.size[2] > b.size[1] * b.size[2] ? reaches(a, 0) : reaches(b, 0)) << seed;
   }
   EXPECT_GT(more, 20);
+}
+
+// Of descriptions that differ by less than a millionth of the sizes the first stays: faces before other faces, faces of the
+// first box before those of the second (unless these are larger), faces before edges.
+TEST(ContactLaws, nearly_equal_descriptions_do_not_flicker) {
+  const auto cube = [](double half, const V3& at, double tilt) {
+    return PlacedBox{V3::Constant(half), {Eigen::AngleAxisd(tilt, V3::UnitX()).toRotationMatrix(), at}};
+  };
+  const double lead = 1e-6 * (0.5 + 0.25) * std::sqrt(3.0);
+  for (const auto& [share, first_stays] : {std::pair{0.8, true}, {1.2, false}}) {
+    // b is broader across the tilt, a has the larger face: b's face is farther by the difference of their halves × tilt.
+    const PlacedBox narrow{{1, 0.25, 0.25}, {}}, broad{{0.25, 0.5, 0.25}, {}};
+    const double tilt = share * 1e-6 * (narrow.half.norm() + broad.half.norm()) / 0.25;
+    const auto found = box_box({narrow.half, cube(0, {0, 0, 0.5}, tilt).placement}, broad, 1e-2);
+    ASSERT_FALSE(found.empty());
+    EXPECT_EQ(std::abs(found[0].normal[1]) > tilt / 2, first_stays) << found[0].normal.transpose();
+    // Two faces of one box, apart by nearly the same.
+    const auto corner = box_box(cube(0.5, {0.7499, 0.7499 + share * lead, 0}, 0), cube(0.25, {0, 0, 0}, 0), 1e-2);
+    ASSERT_FALSE(corner.empty());
+    EXPECT_EQ(corner[0].normal[0] > 0.5, first_stays) << corner[0].normal.transpose();
+  }
+  const double tilt = std::sqrt(1e-6 * std::sqrt(3.0));
+  EXPECT_GT(std::abs(box_box(cube(0.5, {0, 0, 1}, tilt), cube(0.5, {0, 0, 0}, 0), 1e-2)[0].normal[1]), 1e-4) << "equal faces: the first box's";
 }
 
 /// Corners of a box, ends of a capsule, the lowest point of a sphere: all that may touch the ground.
