@@ -126,7 +126,7 @@ template <class T> void motion_columns(const Joint& joint, const T* q, const Mat
 
 /// Inertia of a body about its tree's reference point. Its upper triangle is copied, so that H is symmetric to the bit.
 template <class T> Matrix6<T> inertia_of(const Body& body, bool root, const Matrix3<T>& R, const Vector3<T>& p) {
-  if (body.mass == 0) return Matrix6<T>::Constant(T(0));
+  if (body.mass == 0 && (body.inertia.array() == 0).all()) return Matrix6<T>::Constant(T(0));
   // The reference point is the centre of mass of the root body: exactly zero from itself.
   Vector3<T> c = Vector3<T>::Constant(T(0));
   if (!root) c = p + R * body.com.template cast<T>();

@@ -100,7 +100,7 @@ struct Model {
   [[nodiscard]] Index dofs() const { return first_dof.back(); }
   /// Index of the body with this full name. @throws ModelError naming the candidates.
   [[nodiscard]] Index find(const std::string& name) const;
-  /// Appends a body and returns its index. @throws ModelError on an invalid inertia, axis or parent.
+  /// Appends a body and returns its index. @throws ModelError as validate_body, and on a parent that is no earlier body.
   Index add(Body body);
 };
 
@@ -113,14 +113,14 @@ struct Model {
 /// Number of rows of a constraint in this model. @throws ModelError when it is on a joint that does not exist.
 [[nodiscard]] Index row_count(const Model& model, const Constraint& c);
 
-/// Checks positive mass, positive definite inertia and the triangle inequality of a body, unit axes, proper rotations,
-/// finite numbers, joint data of one entry per degree of freedom. Unit lengths, orthogonality, symmetry and the triangle
-/// inequality hold up to 30 ε · 3 of the largest entry. A massless body (mass and inertia zero) passes here; `validate`
-/// decides whether M stays regular. @throws ModelError naming file, body, value, unit and what is accepted.
+/// Checks finite numbers, mass ≥ 0, a symmetric inertia, unit axes, proper rotations, shapes, joint data of one entry per
+/// degree of freedom; unit lengths, orthogonality and symmetry hold up to 30 ε · 3 of the largest entry. Any inertia passes
+/// here, zero, semidefinite or indefinite: `validate` decides what M makes of it, readers of files whether a solid body can
+/// have it (triangle inequality). @throws ModelError naming file, body, value, unit and what is accepted.
 void validate_body(const Body& body, const std::string& file);
 /// Checks the whole model: bodies, distinct names, constraints, and that M is regular in general position although some
-/// bodies are massless (armature or massive descendants keep it so). The latter is decided by the pivots of M in Quad at
-/// the neutral and at one other fixed configuration, only when a massless body lacks armature. @throws ModelError.
+/// bodies are massless, point masses or rods, by pivots in Quad at the neutral or one other fixed configuration; positive
+/// definite at four of them where an inertia is indefinite. @throws ModelError naming the body, its joint and the pivot.
 void validate(const Model& model, const std::string& file);
 
 /// The neutral configuration: zeros, unit quaternions.

@@ -1,5 +1,11 @@
-// Whether M is regular although some bodies are massless: the pivots of one articulated-inertia pass, in Quad.
+// Whether M is regular although some inertias are zero, semidefinite or indefinite: the pivots of articulated-inertia
+// passes, in Quad.
 #include "algorithms/regularity.h"
+
+#include <charconv>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
 
 #include "algorithms/kinematics.h"
 #include "algorithms/scalars.h"
@@ -7,7 +13,33 @@
 namespace delassus {
 namespace {
 
-bool massless(const Body& body) { return body.mass == 0; }
+std::string text(double x) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
+}
+
+/// What a body's own spatial inertia is.
+enum class Kind : std::uint8_t { massless, semidefinite, indefinite, definite };
+
+struct Own {
+  Kind kind = Kind::definite;
+  Vector3<double> moments = Vector3<double>::Zero();
+};
+
+/// By the principal moments about the centre of mass, to 30 ε · 3 of the largest.
+Own own_inertia(const Body& body) {
+  Own out;
+  const double scale = body.inertia.cwiseAbs().maxCoeff();
+  if (scale == 0) {
+    out.kind = body.mass == 0 ? Kind::massless : Kind::semidefinite;
+    return out;
+  }
+  out.moments = scale * Eigen::SelfAdjointEigenSolver<Matrix3<double>>(body.inertia / scale, Eigen::EigenvaluesOnly).eigenvalues();
+  const double slack = 30 * unit_roundoff<double> * 3 * out.moments.cwiseAbs().maxCoeff();
+  if (out.moments[0] < -slack) out.kind = Kind::indefinite;
+  else if (body.mass == 0 || out.moments[0] <= slack) out.kind = Kind::semidefinite;
+  return out;
+}
 
 bool has_armature(const Joint& joint) {
   if (joint.armature.empty()) return false;
@@ -16,40 +48,88 @@ bool has_armature(const Joint& joint) {
   return true;
 }
 
-/// Index of the first massless body (from the tips) whose joint has a pivot of D = Sᵀ I^A S + armature that is lost in
-/// double precision, ground when there is none. A pivot is lost at 30 ε times its value before its joint's other
-/// pivots and its children's joints were eliminated.
-Index first_lost_pivot(const Model& model, const VectorX<Quad>& q) {
+/// The same model with every indefinite inertia replaced by its absolute value V |Λ| Vᵀ: what pivots are measured with.
+Model with_sizes(Model model, const std::vector<Own>& own) {
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i].kind != Kind::indefinite) continue;
+    const Eigen::SelfAdjointEigenSolver<Matrix3<double>> s(model.bodies[i].inertia);
+    model.bodies[i].inertia = s.eigenvectors() * s.eigenvalues().cwiseAbs().asDiagonal() * s.eigenvectors().transpose();
+  }
+  return model;
+}
+
+/// A pivot D = Sᵀ I^A S + armature that is not positive.
+struct Lost {
+  Index body, freedom;
+  double pivot, whole;
+  bool negative;
+};
+
+/// The first (from the tips) pivot at q that is lost in double precision, measured with its value before its joint's other
+/// pivots and its children's joints were eliminated. Of definite bodies only pivots that are not positive are lost.
+/// `sizes` with absolute inertias is given when some are indefinite: pivots are then measured with the whole subtree.
+std::optional<Lost> first_lost_pivot(const Model& model, const Model* sizes, const std::vector<Own>& own, const VectorX<double>& at) {
+  const VectorX<Quad> q = at.cast<Quad>();
   const Problem<Quad> p = kinematics<Quad>(model, q);
   const Structure& s = *p.structure;
-  std::vector<Matrix6<Quad>> articulated = p.H, children = p.H;  // the latter: before the children's joints give way
+  std::vector<Matrix6<Quad>> articulated = p.H, children = sizes ? kinematics<Quad>(*sizes, q).H : p.H;  // the latter: before the children's joints give way
   const Quad lost = Quad(30) * Quad(unit_roundoff<double>);
   for (Index i = s.bodies() - 1; i >= 0; --i) {
     const Matrix6<Quad> before = articulated[i];
+    const Kind kind = own[static_cast<std::size_t>(i)].kind;
     for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) {
       const Vector6<Quad> u = articulated[i] * p.S[k];
       const Quad pivot = p.S[k].dot(u) + p.armature[k];
       const Quad whole = p.S[k].dot(Vector6<Quad>(children[i] * p.S[k])) + p.armature[k];
-      if (massless(model.bodies[i]) && !(pivot > lost * whole)) return i;
+      const bool negative = pivot < -lost * whole;
+      if (negative || !(pivot > (kind == Kind::definite ? Quad(0) : lost * whole)))
+        return Lost{i, k - s.first_dof[i], static_cast<double>(pivot), static_cast<double>(whole), negative};
       articulated[i] -= u * u.transpose() / pivot;
     }
     if (s.parent[i] == ground) continue;
     articulated[s.parent[i]] += articulated[i];
-    children[s.parent[i]] += before;
+    children[s.parent[i]] += sizes ? children[i] : before;
   }
-  return ground;
+  return std::nullopt;
 }
 
-/// A fixed configuration away from the neutral one: every degree of freedom moved by 0.3 to 0.9, no two alike.
-VectorX<double> perturbed(const Model& model) {
+/// Fixed configurations away from the neutral one: every degree of freedom moved by 0.3 to 0.9, no two alike; turn: −1, 1.
+VectorX<double> perturbed(const Model& model, double turn) {
   VectorX<double> v(model.dofs());
   double fraction = 0;
   for (Index k = 0; k < v.size(); ++k) {
     fraction += 0.6180339887498949;
     if (fraction > 1) fraction -= 1;
-    v[k] = 0.3 + 0.6 * fraction;
+    v[k] = turn * (0.3 + 0.6 * fraction);
   }
   return integrate<double>(model, neutral(model), v);
+}
+
+std::string described(const Own& own, const Body& body) {
+  if (own.kind == Kind::massless) return "massless body";
+  if (own.moments.isZero(0)) return "point mass of " + text(body.mass) + " kg";
+  return "body of " + text(body.mass) + " kg with the principal moments (" + text(own.moments[0]) + " " + text(own.moments[1]) + " " +
+         text(own.moments[2]) + ") kg m^2";
+}
+
+[[noreturn]] void refuse(const Model& model, const std::vector<Own>& own, const Lost& lost, const std::string& file) {
+  const auto i = static_cast<std::size_t>(lost.body);
+  const Body& body = model.bodies[i];
+  const std::string joint = body.joint.name.empty() ? "" : " (joint " + body.joint.name + ")";
+  const std::string pivot = "its pivot of M is " + text(lost.pivot) + " of " + text(lost.whole) + " kg m^2 or kg";
+  const std::string accepted = "armature above 0 on every degree of freedom";
+  if (!lost.negative)
+    throw ModelError(file, body.name, described(own[i], body) + " whose joint" + joint + " moves no inertia of its descendants: M is singular, " + pivot,
+                     "an inertia above 0 about every axis, massive descendants that its joint moves, or " + accepted);
+  std::size_t culprit = i;
+  for (std::size_t k = model.bodies.size(); k-- > i;) {
+    Index up = static_cast<Index>(k);
+    while (up > lost.body) up = model.bodies[static_cast<std::size_t>(up)].parent;
+    if (up == lost.body && own[k].kind == Kind::indefinite) culprit = k;
+  }
+  throw ModelError(file, model.bodies[culprit].name,
+                   described(own[culprit], model.bodies[culprit]) + ": M is indefinite, at " + body.name + joint + " " + pivot,
+                   "principal moments of 0 or more, or " + accepted);
 }
 
 }  // namespace
@@ -57,24 +137,35 @@ VectorX<double> perturbed(const Model& model) {
 void check_regular(const Model& model, const std::string& file) {
   std::vector<bool> tip(model.bodies.size(), true);
   for (const Body& body : model.bodies)
-    if (body.parent != ground) tip[body.parent] = false;
-  bool doubtful = false;
+    if (body.parent != ground) tip[static_cast<std::size_t>(body.parent)] = false;
+  std::vector<Own> own;
+  bool doubtful = false, indefinite = false;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
-    if (!massless(body) || has_armature(body.joint)) continue;
-    if (tip[i])
-      throw ModelError(file, body.name, "massless tip without armature",
-                       "mass above 0 kg, or armature above 0 on every degree of freedom of its joint");
+    own.push_back(own_inertia(body));
+    indefinite = indefinite || own[i].kind == Kind::indefinite;
+    if (own[i].kind == Kind::definite || (own[i].kind != Kind::indefinite && has_armature(body.joint))) continue;
+    if (own[i].kind == Kind::massless && tip[i])
+      throw ModelError(file, body.name, "massless tip without armature" + (body.joint.name.empty() ? "" : ", on joint " + body.joint.name),
+                       "mass above 0 kg, or armature above 0 [kg m^2 or kg] on every degree of freedom of its joint");
     doubtful = true;
   }
   if (!doubtful) return;
-  // A pivot is an analytic function of q: regular at one configuration, it is regular in general position.
+  // Of positive semidefinite inertias a pivot is an analytic function of q: regular at one configuration, it is regular in
+  // general position. Indefinite ones must leave every pivot positive wherever it is looked at.
   Model tree = model;
   tree.constraints.clear();
-  const Index lost = first_lost_pivot(tree, neutral(tree).cast<Quad>());
-  if (lost == ground || first_lost_pivot(tree, perturbed(tree).cast<Quad>()) == ground) return;
-  throw ModelError(file, model.bodies[lost].name, "massless body whose joint moves no inertia of its descendants",
-                   "massive descendants that its joint moves, or armature above 0 on every degree of freedom");
+  const Model sizes = indefinite ? with_sizes(tree, own) : Model{};
+  std::optional<Lost> first;
+  bool regular = false;
+  for (const double turn : {0.0, 1.0, -1.0, 2.0}) {
+    const auto lost = first_lost_pivot(tree, indefinite ? &sizes : nullptr, own, turn == 0 ? neutral(tree) : perturbed(tree, turn));
+    if (lost && lost->negative) refuse(model, own, *lost, file);
+    regular = regular || !lost;
+    if (lost && !first) first = lost;
+    if (!indefinite && (regular || turn == 1)) break;
+  }
+  if (!regular) refuse(model, own, *first, file);
 }
 
 }  // namespace delassus

@@ -94,11 +94,12 @@ Results run_report(const ReportOptions& options, const Progress& progress) {
   r.quick = options.quick;
   copy_tables(r);
   std::vector<Scene> scenes;
-  for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) scenes.push_back(open_scene(name));
+  for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) scenes.push_back(open_scene(name, options.opening));
   int n = 0;
   for (const Scene& scene : scenes) {
     r.scenes.push_back(facts_of(scene));
     SceneResult& s = r.scenes.back();
+    for (const Warning& w : scene.warnings) s.notes.push_back("warning: " + w.text);
     time_scene(scene, limits, s);
     progress(format("time  %2d/%zu  %s  %lld dofs, %lld rows", ++n, scenes.size(), pad_right(s.name, 26).c_str(),
                     static_cast<long long>(s.dofs), static_cast<long long>(s.rows)));

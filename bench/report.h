@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/results.h"
+#include "models/scene.h"
 
 namespace delassus::bench {
 
@@ -15,6 +16,7 @@ struct ReportOptions {
   bool quick = false;                ///< shorter timings, ladder to 1000 links, checks on scenes of up to 120 rows
   bool check = true;                 ///< hold the laws
   bool ladder = true;                ///< climb the swimmers
+  SceneOptions opening;              ///< how `scenes` are opened; their warnings become notes of the page
 };
 
 using Progress = std::function<void(const std::string&)>;

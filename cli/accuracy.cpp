@@ -34,6 +34,7 @@ struct Options {
   std::uint64_t seed = 1;
   double seconds = 1200;
   bool all = false, no_time = false, steps = false, as_json = false;
+  SceneOptions opening;
 };
 
 bool is_family(const std::string& name) {
@@ -41,9 +42,11 @@ bool is_family(const std::string& name) {
   return std::any_of(table.begin(), table.end(), [&](const auto& row) { return row.name == name; });
 }
 
-Subject open_subject(const std::string& name, const Options& o, double away) {
+Subject open_subject(const std::string& name, const Options& o, double away, json& warnings) {
   if (is_family(name)) return subject_of(name, o.n > 0 ? o.n : middle_size(name), o.seed, away);
-  return subject_of(open(name, std::nullopt), away);
+  const Scene scene = open(name, o.opening);
+  warnings = warnings_json(scene);
+  return subject_of(scene, away);
 }
 
 json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
@@ -136,17 +139,17 @@ accuracy::Options settings(const Options& o) {
 
 int some(const Options& o) {
   std::vector<Table> tables;
+  json out = json::array();
   for (const std::string& name : o.subjects)
     for (const double away : o.away) {
-      tables.push_back(measure(open_subject(name, o, away), rungs(o.ops), settings(o)));
+      json warnings;
+      tables.push_back(measure(open_subject(name, o, away, warnings), rungs(o.ops), settings(o)));
+      out.push_back(to_json(tables.back()));
+      if (!warnings.is_null()) out.back()["warnings"] = warnings;
       if (!o.as_json) print(tables.back());
       if (!o.out.empty() && !o.no_time) write_pictures(tables.back(), o.out);
     }
-  if (o.as_json) {
-    json out = json::array();
-    for (const Table& t : tables) out.push_back(to_json(t));
-    std::printf("%s\n", out.dump(1).c_str());
-  }
+  if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
   const std::vector<Claim> made = claims(tables, o.claim);
   if (!o.as_json && !made.empty())
     std::printf("Motion error below %g, λ error below %.1e, certificates true; R⁻¹ from %g to %g:\n\n%s\n", claimed_motion,
@@ -159,9 +162,14 @@ int steps(const Options& o) {
   for (const std::string& name : o.subjects)
     for (const double away : o.away)
       for (const double damping : o.dampings.empty() ? std::vector<double>{own_damping} : o.dampings) {
-        const Convergence c = converge(open_subject(name, o, away), rungs(o.ops), damping, settings(o));
-        if (o.as_json) out.push_back(steps_json(c));
-        else print_steps(c);
+        json warnings;
+        const Convergence c = converge(open_subject(name, o, away, warnings), rungs(o.ops), damping, settings(o));
+        if (o.as_json) {
+          out.push_back(steps_json(c));
+          if (!warnings.is_null()) out.back()["warnings"] = warnings;
+        } else {
+          print_steps(c);
+        }
         if (!o.out.empty()) write(std::filesystem::path(o.out) / (name + "_steps.svg"), bench::standalone(picture(c)));
       }
   if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
@@ -226,7 +234,8 @@ void add_accuracy(CLI::App& app, Run& run) {
   c->add_flag("--all", o->all, "every scene at its place and 1000 km away, every family at its own damping; to 1e14 where timed");
   c->add_flag("--steps", o->steps, "the error after each step of refinement, proximal and Krylov iterations, at --damping (0: hard rows) or the own one");
   c->add_flag("--no-time", o->no_time, "no times, no counted operations, no pictures");
-  c->add_flag("--json", o->as_json, "an array of {subject, dof, rows, away, levels}");
+  c->add_flag("--json", o->as_json, "an array of {subject, dof, rows, away, levels, of scenes also warnings}");
+  add_scene_options(*c, o->opening);
   c->footer("Errors are against an answer in Quad: max|δλ|/max|λ|, ‖δν‖/‖ν‖ in the norm of M, backward. The motion of lcaba_refined "
             "is its own ν, that of others M⁻¹Jᵀλ. The claim: on scenes, from 1e-14 to 1e-2, a rung's motion error is "
             "below 1e-10, its λ error below 30 roundings and its certificate true. Exit code 1 when it is false.");

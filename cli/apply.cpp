@@ -18,6 +18,7 @@ struct Options {
   std::string scene, op, input;
   bool solve = false, as_json = false;
   double damping = 0, accuracy = 0;
+  SceneOptions opening;
 };
 
 void require_capability(const OperatorRow& row, bool solve) {
@@ -75,7 +76,7 @@ void print_text(const Options& o, const VectorX<double>& input, const Answer& an
 
 int apply(const Options& o, bool has_damping) {
   const OperatorRow& row = find_operator(o.op);
-  const Scene scene = open(o.scene, has_damping ? std::optional<double>(o.damping) : std::nullopt);
+  const Scene scene = open(o.scene, o.opening, has_damping ? std::optional<double>(o.damping) : std::nullopt);
   require_capability(row, o.solve);
   const auto structure = structure_of(scene.model);
   const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
@@ -87,7 +88,8 @@ int apply(const Options& o, bool has_damping) {
               {"dof", structure->dofs()}, {"rows", structure->rows}, {"damping", damping_json(scene.damping)},
               {"input", std::vector<double>(input.begin(), input.end())},
               {"output", std::vector<double>(answer.output.begin(), answer.output.end())},
-              {"report", report_json(answer.report)}, {"dependent_rows", answer.dependent}};
+              {"report", report_json(answer.report)}, {"dependent_rows", answer.dependent},
+              {"warnings", warnings_json(scene)}};
     if (o.solve) j["operations_over_lcaba"] = answer.cost > 0 ? json(answer.cost) : json(nullptr);
     if (!scene.damping.blocks.empty()) j["damping_blocks"] = damping_blocks_json(scene.damping);
     std::printf("%s\n", j.dump().c_str());
@@ -102,7 +104,7 @@ int apply(const Options& o, bool has_damping) {
 void add_apply(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("apply", "apply or invert one operator: a = A f, or with --solve f = A⁻¹ a");
   auto o = std::make_shared<Options>();
-  c->add_option("scene", o->scene, "name, .yaml file or swimmer:N")->required();
+  c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--op", o->op, "operator (see `delassus list operators`)")->required();
   c->add_flag("--solve", o->solve, "f = A⁻¹ a instead of a = A f");
   c->add_option("--accuracy", o->accuracy,
@@ -114,7 +116,8 @@ void add_apply(CLI::App& app, Run& run) {
       });
   c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
   CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's")->check(options::at_least(0, "1/kg"));
-  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, with --solve operations_over_lcaba}");
+  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, warnings, with --solve operations_over_lcaba}");
+  add_scene_options(*c, o->opening);
   c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");
   c->callback([=, &run] { run = [=] { return apply(*o, damping->count() > 0); }; });
 }

@@ -21,18 +21,21 @@ struct Options {
   std::string baseline;
   double budget = 0.02, slack = 1.5;
   bool as_json = false;
+  SceneOptions opening;
 };
 
 constexpr const char* phases[] = {"analyze", "update", "new_damping", "apply", "solve"};
 
 json scene_json(const std::string& name, const Options& o) {
-  const Scene scene = open(name, std::nullopt);
+  const Scene scene = open(name, o.opening);
   bench::SceneResult r = bench::facts_of(scene, false);
   const Problem<double> problem = problem_of(scene);
   r.kinematics = bench::time_kinematics(scene.model, scene.q, o.budget);
   for (const OperatorRow* row : chosen_operators(o.ops))
     r.cells.push_back(bench::measure(*row, problem, scene.damping, {o.budget, 0.1}));
-  return r;
+  json j = r;
+  j["warnings"] = warnings_json(scene);
+  return j;
 }
 
 std::string lowest(const json& timing) { return timing.is_null() ? "–" : bench::three_digits(timing["lowest"]); }
@@ -120,6 +123,7 @@ void add_bench(CLI::App& app, Run& run) {
   c->add_option("--baseline", o->baseline, "JSON of an earlier run on the same machine");
   c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(options::above(0, ""))->capture_default_str();
   c->add_flag("--json", o->as_json, "{machine, units, scenes}");
+  add_scene_options(*c, o->opening);
   c->footer("Times are the lowest of several batches. Exit code 3 when a phase is slower than slack × baseline or needs "
             "more counted operations.");
   c->callback([=, &run] { run = [=] { return run_bench(*o); }; });

@@ -24,12 +24,14 @@ struct Options {
   bool as_json = false, digits = false;
   std::optional<double> damping;
   std::string picture;
+  SceneOptions opening;
 };
 
 /// The cases the options ask for: a scene; one family; or every family at the middle of its sizes.
-std::vector<laws::Case> cases(const Options& o) {
+std::vector<laws::Case> cases(const Options& o, json& warnings) {
   if (!o.scene.empty()) {
-    const Scene scene = open(o.scene, std::nullopt);
+    const Scene scene = open(o.scene, o.opening);
+    warnings = warnings_json(scene);
     return {laws::make_case(problem_of(scene), scene.damping, scene.name, o.seed)};
   }
   std::vector<laws::Case> out;
@@ -101,7 +103,8 @@ int check(const Options& o) {
     throw ModelError("", "check", "both --family and --scene are given", "one of them, or none for every family");
   const auto ops = chosen_operators(o.ops, o.defect);
   const std::string_view left_out = o.defect.empty() ? "" : laws::left_out(laws::find_defect(o.defect));
-  const std::vector<laws::Case> all = cases(o);
+  json warnings;
+  const std::vector<laws::Case> all = cases(o, warnings);
   int failed = 0;
   json out = json::array();
   if (!o.as_json) print_cases(all);
@@ -118,6 +121,7 @@ int check(const Options& o) {
       else print_line(law.name, line);
     }
     out.push_back({{"name", op->name}, {"laws", rows}});
+    if (!warnings.is_null()) out.back()["warnings"] = warnings;
   }
   if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
   else std::printf("%zu cases, %d failed; a law holds below ratio %g\n", all.size(), failed, laws::pass_below);
@@ -126,7 +130,7 @@ int check(const Options& o) {
 
 int digits_of(const Options& o) {
   if (o.ops.size() > 1) throw ModelError("", "--op", "is given more than once with --digits", "aba_sweep or lcaba");
-  return check_digits({o.scene, o.family, o.n, o.seed, o.damping, o.ops.empty() ? "lcaba" : o.ops.front(), o.picture, o.as_json});
+  return check_digits({o.scene, o.family, o.n, o.seed, o.damping, o.ops.empty() ? "lcaba" : o.ops.front(), o.picture, o.as_json, o.opening});
 }
 
 }  // namespace
@@ -140,10 +144,11 @@ void add_check(CLI::App& app, Run& run) {
   c->add_option("scene,--scene", o->scene, "a scene instead of families");
   c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(options::whole(1));
   c->add_option("--seed", o->seed, "of the problem and its vectors")->check(options::whole(0))->capture_default_str();
-  c->add_flag("--json", o->as_json, "an array of {name, laws}; with --digits an object");
+  c->add_flag("--json", o->as_json, "an array of {name, laws, of scenes also warnings}; with --digits an object");
   auto* digits = c->add_flag("--digits", o->digits, "instead: digits lost by every link, by random rounding (docs/digits.md); --op lcaba or aba_sweep");
   c->add_option("--damping", o->damping, "with --digits: R⁻¹ of every row [1/kg]")->check(options::at_least(0, "1/kg"))->needs(digits);
   c->add_option("--picture", o->picture, "with --digits: SVG of the scene, or of digits against link for a family")->needs(digits);
+  add_scene_options(*c, o->opening);
   c->footer("Without --family and --scene: every family. Exit code 1 when a law is broken.");
   c->callback([=, &run] { run = [=] { return o->digits ? digits_of(*o) : check(*o); }; });
 }

@@ -50,7 +50,7 @@ Subject subject(const DigitsOptions& o) {
     }
     s.rows.assign(static_cast<std::size_t>(c.rows()), "");
   } else {
-    s.scene = open(o.scene, o.damping);
+    s.scene = open(o.scene, o.opening, o.damping);
     s.label = s.scene->name;
     s.problem = problem_of(*s.scene);
     s.damping = s.scene->damping;
@@ -163,6 +163,7 @@ json to_json(const Subject& s, const DigitsOptions& o, const digits::Measured& m
   for (const digits::Stage& stage : m.stages) stages.push_back({{"part", stage.name}, {"kept", stage.kept}, {"cost", stage.cost}});
   json j = {{"subject", s.label}, {"op", o.op}, {"most_digits", most_digits}, {"report", report_json(m.report)}, {"in_double", report_json(refused)},
             {"links", links}, {"rows", rows}, {"parts", stages}};
+  if (s.scene) j["warnings"] = warnings_json(*s.scene);
   j["worst_link"] = m.links.empty() ? json(nullptr) : json(s.bodies[static_cast<std::size_t>(worst_link(m).body)]);
   return j;
 }

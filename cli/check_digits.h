@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "algorithms/spatial.h"
+#include "models/scene.h"
 
 namespace delassus::cli {
 
@@ -16,6 +16,7 @@ struct DigitsOptions {
   std::string op;                   ///< aba_sweep or lcaba
   std::string picture;              ///< file to write; empty: none
   bool as_json = false;
+  SceneOptions opening;             ///< how the scene is opened
 };
 
 /// Prints the digits; returns the exit code. @throws ModelError for what cannot be opened, measured or written.

@@ -2,18 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <map>
+
+#include <CLI/CLI.hpp>
 
 #include "property_tests/defects.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
-Scene open(const std::string& name, const std::optional<double>& damping) {
-  Scene scene = open_scene(name);
+void add_scene_options(CLI::App& app, SceneOptions& options) {
+  app.add_flag("--strict", options.strict, "what is only doubtful in a scene or a robot's file is an error");
+  const std::map<std::string, RobotOptions::Base> bases{
+      {"free", RobotOptions::Base::free}, {"fixed", RobotOptions::Base::fixed}, {"planar", RobotOptions::Base::planar}};
+  app.add_option_function<std::string>("--base", [&options, bases](const std::string& text) { options.base = bases.at(text); },
+                                       "of a robot's file: free, fixed or planar (default: free; fixed when the root link is named world)")
+      ->check(CLI::IsMember({"free", "fixed", "planar"}));
+  app.add_option_function<double>("--armature", [&options](const double& x) { options.armature = x; },
+                                  "of a robot's file: of every joint to which the file gives none [kg m² or kg]")
+      ->check(options::at_least(0, "kg m² or kg"));
+}
+
+namespace {
+
+constexpr std::size_t most_of_a_kind = 5;
+
+/// The first few of each kind, then how many more there are.
+void print_warnings(const std::vector<Warning>& warnings) {
+  std::map<std::string, std::size_t> counts;
+  for (const Warning& w : warnings)
+    if (++counts[w.kind] <= most_of_a_kind) std::fprintf(stderr, "warning: %s\n", w.text.c_str());
+  for (const auto& [kind, n] : counts)
+    if (n > most_of_a_kind) std::fprintf(stderr, "warning: %s: %zu more of this kind, %zu in all (--json lists them)\n", kind.c_str(), n - most_of_a_kind, n);
+  if (!warnings.empty()) std::fprintf(stderr, "%zu warning%s; --strict makes them errors\n", warnings.size(), warnings.size() == 1 ? "" : "s");
+}
+
+}  // namespace
+
+json warnings_json(const Scene& scene) {
+  json out = json::array();
+  for (const Warning& w : scene.warnings) out.push_back({{"kind", w.kind}, {"text", w.text}});
+  return out;
+}
+
+Scene open(const std::string& name, const SceneOptions& options, const std::optional<double>& damping) {
+  Scene scene = open_scene(name, options);
+  print_warnings(scene.warnings);
   if (!damping) return scene;
   if (!(std::isfinite(*damping) && *damping >= 0))
-    throw ModelError("", "--damping", std::to_string(*damping) + " 1/kg", "a finite number ≥ 0 [1/kg]");
+    throw ModelError("", "--damping", json(*damping).dump() + " 1/kg", "a finite number ≥ 0 [1/kg]");
   scene.damping = Damping<double>::uniform(static_cast<Index>(scene.damping.diagonal.size()), *damping);
   return scene;
 }
@@ -53,18 +93,39 @@ json report_json(const Report& r) {
 
 namespace {
 
+/// Takes no value; remembers where the text stops being JSON, a number beyond double included.
+struct Position : nlohmann::json_sax<json> {
+  std::size_t at = 0;
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t position, const std::string&, const json::exception& e) override {
+    overflow = dynamic_cast<const json::out_of_range*>(&e) != nullptr;
+    at = position;
+    return false;
+  }
+  bool overflow = false;
+};
+
 /// Names the entry at which a text stops being a JSON array of numbers, and what stands there.
 [[noreturn]] void not_json(const std::string& file, const std::string& text, const std::string& accepted) {
-  std::size_t at = text.size();
-  try {
-    const json parsed = json::parse(text);
-  } catch (const json::parse_error& e) {
-    at = std::min(at, e.byte == 0 ? at : e.byte - 1);
-  }
+  Position stop;
+  (void)json::sax_parse(text, &stop);
+  const std::size_t at = std::min(text.size(), stop.at == 0 ? text.size() : stop.at - 1);
   const std::size_t begin = at == 0 ? 0 : text.find_last_of(",[ \n\t", at - 1) + 1, end = text.find_first_of(",] \n\t", at);
   const std::string word = text.substr(begin, std::min<std::size_t>(end - begin, 40));
   const auto entry = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), ',');
-  throw ModelError(file, "entry " + std::to_string(entry), at == text.size() ? "the array ends too early" : "'" + word + "' is no JSON", accepted);
+  throw ModelError(file, "entry " + std::to_string(entry),
+                   stop.overflow ? word + " is not a finite number" : at == text.size() ? "the array ends too early" : "'" + word + "' is no JSON", accepted);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What several subcommands share: damping from the command line, JSON of vectors, operators by capability.
+// What several subcommands share: how a scene is opened, damping from the command line, JSON of vectors, operators by capability.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,23 @@
 #include "algorithms/delassus.h"
 #include "models/scene.h"
 
+namespace CLI {
+class App;
+}
+
 namespace delassus::cli {
 
 using nlohmann::json;
 
-/// Opens a scene and, when `damping` is given, replaces R⁻¹ of every row by it [1/kg].
+/// Adds --strict, --base and --armature, which say how a scene or a robot's file is opened.
+void add_scene_options(CLI::App& app, SceneOptions& options);
+
+/// Opens a scene and, when `damping` is given, replaces R⁻¹ of every row by it [1/kg]. Warnings go to standard error.
 /// @throws ModelError for an unknown scene and for a damping that is negative or not finite.
-[[nodiscard]] Scene open(const std::string& scene, const std::optional<double>& damping);
+[[nodiscard]] Scene open(const std::string& scene, const SceneOptions& options, const std::optional<double>& damping = std::nullopt);
+
+/// [{kind, text}] of a scene's warnings.
+[[nodiscard]] json warnings_json(const Scene& scene);
 
 /// One number when every row has the same damping, otherwise an array of the rows' diagonal entries.
 [[nodiscard]] json damping_json(const Damping<double>& damping);

@@ -10,6 +10,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/describe_robot.h"
 #include "cli/effects.h"
 
 namespace delassus::cli {
@@ -67,7 +68,8 @@ json describe_json(const Scene& scene) {
   const bench::SceneResult facts = bench::facts_of(scene, false);
   json j = {{"scene", scene.name}, {"bodies", facts.bodies}, {"dof", facts.dofs}, {"rows", facts.rows},
             {"trees", facts.trees}, {"summary", facts.summary}, {"constraints", constraints_json(scene.model)},
-            {"damping", damping_json(scene.damping)}, {"effects", effects_json(scene)}, {"notes", facts.notes},
+            {"robots", robots_json(scene)}, {"damping", damping_json(scene.damping)}, {"effects", effects_json(scene)}, {"notes", facts.notes},
+            {"warnings", warnings_json(scene)},
             {"provisional_pose", scene.provisional_pose},
             {"elimination", {{"M", plan_json(scene, *structure, Matrix::M)}, {"M_R", plan_json(scene, *structure, Matrix::M_R)}}},
             {"operators", operators_json(structure)}};
@@ -87,10 +89,11 @@ std::string some(const json& list, std::size_t most) {
 
 void print_line(const char* key, const std::string& value) { std::printf("%-18s %s\n", key, value.c_str()); }
 
-void print_text(const json& j) {
+void print_text(const json& j, bool joints_too) {
   print_line("scene", j["scene"]);
   print_line("bodies", j["bodies"].dump() + " in " + j["trees"].dump() + " tree(s)");
   print_line("dofs", j["dof"].dump());
+  print_robots(j["robots"], joints_too);
   print_line("rows", j["rows"].dump() + ": " + j["summary"].get<std::string>());
   print_line("damping [1/kg]", j["damping"].is_array() ? "per row (--json lists it)" : j["damping"].dump());
   if (j["loops"]["any"].get<bool>())
@@ -120,10 +123,11 @@ void print_text(const json& j) {
   for (const json& note : j["notes"]) print_line("note", note);
 }
 
-int describe(const std::string& name, bool as_json) {
-  const json j = describe_json(open(name, std::nullopt));
+int describe(const std::string& name, const SceneOptions& opening, bool as_json) {
+  const Scene scene = open(name, opening);
+  const json j = describe_json(scene);
   if (as_json) std::printf("%s\n", j.dump(1).c_str());
-  else print_text(j);
+  else print_text(j, scene.is_robot_file);
   return good;
 }
 
@@ -133,9 +137,11 @@ void add_describe(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("describe", "bodies, rows, elimination order, fill, bytes, effects called for and skipped");
   auto scene = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false);
-  c->add_option("scene", *scene, "name, .yaml file or swimmer:N")->required();
+  auto opening = std::make_shared<SceneOptions>();
+  c->add_option("scene", *scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_flag("--json", *as_json, "everything, as JSON");
-  c->callback([=, &run] { run = [=] { return describe(*scene, *as_json); }; });
+  add_scene_options(*c, *opening);
+  c->callback([=, &run] { run = [=] { return describe(*scene, *opening, *as_json); }; });
 }
 
 }  // namespace delassus::cli

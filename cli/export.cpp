@@ -63,11 +63,12 @@ json problem_json(const Scene& scene) {
           {"joints", joints_json(scene.model)}, {"q", vector_json(scene.q)}, {"armature", p.armature}, {"S", S}, {"H", H},
           {"constraints", constraints}, {"M", matrix_json(reference::mass_matrix(p))},
           {"J", matrix_json(reference::constraint_jacobian(p))},
-          {"R_inverse", matrix_json(reference::damping_matrix(*p.structure, scene.damping))}};
+          {"R_inverse", matrix_json(reference::damping_matrix(*p.structure, scene.damping))},
+          {"warnings", warnings_json(scene)}};
 }
 
-int export_scene(const std::string& name, const std::string& file) {
-  const std::string text = problem_json(open(name, std::nullopt)).dump();
+int export_scene(const std::string& name, const SceneOptions& opening, const std::string& file) {
+  const std::string text = problem_json(open(name, opening)).dump();
   if (file.empty()) {
     std::printf("%s\n", text.c_str());
     return good;
@@ -83,10 +84,12 @@ int export_scene(const std::string& name, const std::string& file) {
 void add_export(CLI::App& app, Run& run) {
   CLI::App* c = app.add_subcommand("export", "the numeric problem and dense M, J, R⁻¹ as JSON, for others to check");
   auto scene = std::make_shared<std::string>(), file = std::make_shared<std::string>();
-  c->add_option("scene", *scene, "name, .yaml file or swimmer:N")->required();
+  c->add_option("scene", *scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
+  auto opening = std::make_shared<SceneOptions>();
+  add_scene_options(*c, *opening);
   c->add_option("--out", *file, "file to write instead of standard output");
   c->footer("Numbers are printed with as many digits (up to 17) as reading them back exactly needs.");
-  c->callback([=, &run] { run = [=] { return export_scene(*scene, *file); }; });
+  c->callback([=, &run] { run = [=] { return export_scene(*scene, *opening, *file); }; });
 }
 
 }  // namespace delassus::cli

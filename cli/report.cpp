@@ -5,6 +5,7 @@
 
 #include "bench/report.h"
 #include "cli/commands.h"
+#include "cli/common.h"
 
 namespace delassus::cli {
 
@@ -32,6 +33,7 @@ void add_report(CLI::App& app, Run& run) {
   c->add_flag("--quick", options->quick, "shorter timings, swimmers to 1000 links, large scenes timed but not checked");
   c->add_flag("!--no-check", options->check, "time only");
   c->add_flag("!--no-ladder", options->ladder, "leave out the swimmers of growing length");
+  add_scene_options(*c, options->opening);
   c->footer("Exit code 1 when a law is broken.");
   c->callback([=, &run] { run = [=] { return report(*options, *directory); }; });
 }

@@ -1,8 +1,9 @@
-// Small helpers of the loaders: reading numbers strictly, shortening names for messages.
+// Small helpers of the loaders: reading numbers strictly, writing them with all their digits, shortening names.
 #pragma once
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +20,22 @@ namespace delassus {
   return out;
 }
 
+/// The shortest decimal number that reads back as the same double.
+[[nodiscard]] inline std::string number_text(double x) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, x);
+  return {buffer, result.ptr};
+}
+
+/// The numbers of a vector, separated by blanks.
+template <class V> [[nodiscard]] std::string numbers_text(const V& v) {
+  std::string out;
+  for (const double x : v) out += (out.empty() ? "" : " ") + number_text(x);
+  return out;
+}
+
 /// A finite decimal number filling the whole text (blanks around it allowed); no value otherwise. The locale is ignored.
+/// Numbers below the range of double are 0, those above it have no value.
 [[nodiscard]] inline std::optional<double> finite_number(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   const std::size_t first = text.find_first_not_of(blanks);
@@ -28,7 +44,14 @@ namespace delassus {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) {  // too large or too small: the wider type tells
+    long double wide = 0;
+    const auto wider = std::from_chars(text.data(), text.data() + text.size(), wide);
+    if (wider.ec == std::errc() && std::abs(wide) < 1) return std::signbit(wide) ? -0.0 : 0.0;
+    return std::nullopt;
+  }
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

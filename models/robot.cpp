@@ -2,9 +2,48 @@
 
 #include <Eigen/Geometry>
 
+#include "algorithms/regularity.h"
+#include "models/message.h"
+#include "models/mjcf.h"
 #include "models/urdf.h"
+#include "models/urdf_xml.h"
 
 namespace delassus {
+namespace {
+
+/// A format of robot files: a row per reader.
+struct Reader {
+  std::string_view root;  ///< name of the root element
+  std::string_view what;
+  Robot (*read)(Model& model, const RobotOptions& options);
+};
+
+constexpr Reader readers[] = {{"robot", "URDF", add_urdf}, {"mujoco", "MJCF", add_mjcf}};
+
+const Reader& reader_of(const std::string& file) {
+  tinyxml2::XMLDocument document;
+  const std::string root = load_xml(document, file).Name();
+  std::string known;
+  for (const Reader& r : readers) {
+    if (root == r.root) return r;
+    known += (known.empty() ? "<" : ", <") + std::string(r.root) + "> (" + std::string(r.what) + ")";
+  }
+  throw ModelError(file, "root element", in_quotes(root) + " is no robot", known);
+}
+
+/// Whether the robot's part of M is regular; trees do not couple in M.
+void check_regular_robot(const Model& model, std::size_t first, const std::string& file) {
+  Model tree;
+  for (std::size_t i = first; i < model.bodies.size(); ++i) {
+    Body body = model.bodies[i];
+    if (body.parent != ground) body.parent -= static_cast<Index>(first);
+    body.shapes.clear();
+    tree.add(std::move(body));
+  }
+  check_regular(tree, file);
+}
+
+}  // namespace
 
 void Findings::warn(std::string kind, const std::string& file, const std::string& element, const std::string& problem,
                     const std::string& advice) {
@@ -12,7 +51,12 @@ void Findings::warn(std::string kind, const std::string& file, const std::string
   warnings.push_back({std::move(kind), file + ": " + element + ": " + problem + " (" + advice + ")"});
 }
 
-Robot add_robot(Model& model, const RobotOptions& options) { return add_urdf(model, options); }
+Robot add_robot(Model& model, const RobotOptions& options) {
+  const std::size_t first = model.bodies.size();
+  Robot robot = reader_of(options.file).read(model, options);
+  check_regular_robot(model, first, options.file);
+  return robot;
+}
 
 Matrix3<double> rotation_rpy(const Vector3<double>& rpy) {
   return (Eigen::AngleAxisd(rpy[2], Vector3<double>::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3<double>::UnitY()) *

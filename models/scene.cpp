@@ -1,19 +1,38 @@
 #include "models/scene.h"
 
 #include <filesystem>
+#include <set>
 
 #include "models/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {
 
-SceneLoader::SceneLoader(const std::string& path) : path_(path), root_(Yaml::open(path)) {}
+namespace {
+
+/// Every entry once, in the order of the first.
+template <class T, class Key> void once(std::vector<T>& list, const Key& key) {
+  std::set<std::string> seen;
+  std::erase_if(list, [&](const T& x) { return !seen.insert(key(x)).second; });
+}
+
+}  // namespace
+
+SceneLoader::SceneLoader(const std::string& path, Yaml root, const SceneOptions& options)
+    : path_(path), root_(std::move(root)), strict_(options.strict) {}
+
+void SceneLoader::warn(const std::string& kind, const Yaml& at, const std::string& problem, const std::string& advice) {
+  Findings found(strict_);
+  found.warn(kind, at.file_and_line(), at.key(), problem, advice);
+  scene_.warnings.push_back(found.warnings.front());
+}
 
 Scene SceneLoader::run() {
-  root_.keys({"note", "pose", "gravity", "robots", "boxes", "ground", "constraints", "hold", "assembly", "contacts", "damping"});
+  root_.keys({"note", "pose", "strict", "gravity", "robots", "boxes", "ground", "constraints", "hold", "assembly", "contacts", "damping"});
   scene_.file = path_;
   scene_.name = std::filesystem::path(path_).stem().string();
   if (root_.has("note")) scene_.note = root_.at("note").text("a text");
+  if (root_.has("strict")) strict_ = root_.at("strict").boolean() || strict_;
   if (root_.has("pose")) {
     const std::string text = root_.at("pose").text("provisional, recorded");
     if (text != "provisional" && text != "recorded") root_.at("pose").fail(in_quotes(text) + " is not understood", "provisional, recorded");
@@ -44,9 +63,27 @@ Scene SceneLoader::run() {
   if (root_.has("contacts")) read_contacts(root_.at("contacts"));
   read_damping(root_);
   validate(scene_.model, path_);
+  once(scene_.notes, [](const std::string& x) { return x; });
+  once(scene_.warnings, [](const Warning& x) { return x.text; });
+  scene_.robots = std::move(robots_);
   return std::move(scene_);
 }
 
-Scene load_scene(const std::string& path) { return SceneLoader(path).run(); }
+Scene load_scene(const std::string& path, const SceneOptions& options) { return SceneLoader(path, Yaml::open(path), options).run(); }
+
+Scene load_robot(const std::string& path, const SceneOptions& options) {
+  const std::filesystem::path file(path);
+  std::string name = file.stem().string();
+  if (name.empty() || name == "world" || name == "ground") name = "robot";
+  YAML::Node robot, root;
+  robot["name"] = name;
+  robot["file"] = file.filename().string();
+  if (options.base) robot["base"] = std::string(*options.base == RobotOptions::Base::fixed ? "fixed" : *options.base == RobotOptions::Base::free ? "free" : "planar");
+  if (options.armature) robot["armature"] = number_text(*options.armature);
+  root["robots"].push_back(robot);
+  Scene scene = SceneLoader(path, Yaml::of(path, root), options).run();
+  scene.is_robot_file = true;
+  return scene;
+}
 
 }  // namespace delassus

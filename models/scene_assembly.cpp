@@ -90,7 +90,7 @@ void SceneLoader::close_loops_of_scene() {
 void SceneLoader::tell_assembly() {
   const Model& model = scene_.model;
   const auto name_of = [&](Index i) { return model.bodies[static_cast<std::size_t>(i)].joint.name; };
-  Findings found;
+  Findings found(strict_);
   for (const Gap& g : scene_.assembly.gaps) {
     if (g.after <= g.rounding) continue;
     const char* unit = g.angle ? " rad" : " m";

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <fstream>
 
 #include "models/message.h"
 #include "models/scene.h"
@@ -18,6 +19,14 @@ fs::path scene_folder() {
   return {};
 }
 
+/// Whether the first character of a file that is no blank (nor byte order mark) is `<`: XML, and no YAML of ours.
+bool begins_with_an_element(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  for (char c = 0; stream.get(c);)
+    if (std::string_view(" \t\r\n\xef\xbb\xbf").find(c) == std::string_view::npos) return c == '<';
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::string> scene_names() {
@@ -30,19 +39,23 @@ std::vector<std::string> scene_names() {
   return out;
 }
 
-Scene open_scene(const std::string& name) {
+Scene open_scene(const std::string& name, const SceneOptions& options) {
+  std::error_code error;
+  const bool file = fs::is_regular_file(name, error);
+  if (file && begins_with_an_element(name)) return load_robot(name, options);
+  if (options.base) throw ModelError("", "--base", in_quotes(name) + " is no robot's file", "a robot's file; in scenes, base: of the robot");
+  if (options.armature) throw ModelError("", "--armature", in_quotes(name) + " is no robot's file", "a robot's file; in scenes, armature: of the robot");
   if (name.rfind("swimmer:", 0) == 0) {
     const auto links = finite_number(std::string_view(name).substr(8));
     if (!links || *links < 1 || *links > 1e9 || *links != std::floor(*links))
       throw ModelError("scene", in_quotes(name), "has no number of links", "swimmer:N with a whole number N >= 1");
     return swimmer(static_cast<Index>(*links));
   }
-  std::error_code error;
   const bool path = name.find('/') != std::string::npos || fs::path(name).extension() == ".yaml";
-  if (path || fs::is_regular_file(name, error)) return load_scene(name);
-  const fs::path folder = scene_folder(), file = folder / (name + ".yaml");
-  if (!name.empty() && !folder.empty() && fs::is_regular_file(file, error)) return load_scene(file.string());
-  std::string known = "a .yaml file, swimmer:N";
+  if (path || file) return load_scene(name, options);
+  const fs::path folder = scene_folder(), stem = folder / (name + ".yaml");
+  if (!name.empty() && !folder.empty() && fs::is_regular_file(stem, error)) return load_scene(stem.string(), options);
+  std::string known = "a .yaml file, a robot's file, swimmer:N";
   for (const std::string& s : scene_names()) known += ", " + s;
   throw ModelError("scene", in_quotes(name), "does not exist", known);
 }

@@ -14,7 +14,7 @@ namespace delassus {
 
 class SceneLoader {
  public:
-  explicit SceneLoader(const std::string& path);
+  SceneLoader(const std::string& path, Yaml root, const SceneOptions& options);
   Scene run();
 
  private:
@@ -33,9 +33,10 @@ class SceneLoader {
   void read_robot(const Yaml& y);
   void read_box(const Yaml& y);
   [[nodiscard]] std::string new_name(const Yaml& y);
-  [[nodiscard]] RobotOptions urdf_options(const Yaml& y, const std::string& name) const;
+  [[nodiscard]] RobotOptions robot_options(const Yaml& y, const std::string& name) const;
   void set_joints(const Robot& robot, const Yaml& joints);
   void set_mimics(const Robot& robot);
+  void check_ranges(const Robot& robot, const Yaml& y);
   void set_pose(Index body, const Pose<double>& pose);
   void grow_q();
 
@@ -67,8 +68,12 @@ class SceneLoader {
   void read_damping(const Yaml& root);
   void damp(const Yaml& y, Index row, Index rows);
 
+  /// A doubt about a value of the scene. @throws ModelError in strict mode.
+  void warn(const std::string& kind, const Yaml& at, const std::string& problem, const std::string& advice);
+
   std::string path_;
   Yaml root_;
+  bool strict_;
   Scene scene_;
   std::vector<Robot> robots_;
   std::vector<Index> object_;                     // per body: index of its robot or box

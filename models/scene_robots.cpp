@@ -49,16 +49,19 @@ std::string SceneLoader::new_name(const Yaml& y) {
   return text;
 }
 
-RobotOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) const {
+RobotOptions SceneLoader::robot_options(const Yaml& y, const std::string& name) const {
   RobotOptions o;
   o.robot = name;
-  const Yaml urdf = y.at("urdf");
-  std::filesystem::path file = urdf.text("path of a URDF file");
+  if (y.has("file") && y.has("urdf")) y.fail("has file and urdf", "one of them");
+  const Yaml path = y.at(y.has("file") ? "file" : "urdf");
+  std::filesystem::path file = path.text("path of a robot's file");
   if (file.is_relative()) file = std::filesystem::path(path_).parent_path() / file;
   o.file = file.lexically_normal().string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) urdf.fail("the file " + in_quotes(o.file) + " cannot be read", "path of a URDF file, relative to the scene file");
-  if (y.has("base")) o.base = base_of(y.at("base"));
+  if (!std::filesystem::is_regular_file(file, error)) path.fail("the file " + in_quotes(o.file) + " cannot be read", "path of a robot's file, relative to the scene file");
+  o.strict = strict_;
+  o.base_given = y.has("base");
+  if (o.base_given) o.base = base_of(y.at("base"));
   if (y.has("pose")) o.pose = y.at("pose").pose();
   if (y.has("joint_types"))
     for (const auto& [joint, value] : y.at("joint_types").entries()) {
@@ -68,7 +71,9 @@ RobotOptions SceneLoader::urdf_options(const Yaml& y, const std::string& name) c
       if (value.is_map() && value.has("axis2")) type.axis2 = value.at("axis2").direction();
       o.joint_types.emplace(joint, type);
     }
-  if (y.has("armature"))
+  if (y.has("armature") && y.at("armature").is_scalar())
+    o.armature_of_all = y.at("armature").non_negative(" [kg m^2 or kg]");
+  else if (y.has("armature"))
     for (const auto& [joint, value] : y.at("armature").entries()) o.armature.emplace(joint, value.non_negative(" [kg m^2 or kg]"));
   return o;
 }
@@ -128,19 +133,46 @@ void SceneLoader::set_mimics(const Robot& robot) {
   }
 }
 
+/// Values given outside a joint's limits are doubtful; neutral ones are only told.
+void SceneLoader::check_ranges(const Robot& robot, const Yaml& y) {
+  std::map<std::string, Yaml> given;
+  if (y.has("joints"))
+    for (const auto& [joint, value] : y.at("joints").entries()) given.emplace(joint, value);
+  std::string outside;
+  int count = 0;
+  for (const auto& [name, body] : robot.joints) {
+    const Joint& joint = scene_.model.bodies[z(body)].joint;
+    if (dof_count(joint.type) != 1 || joint.lower.empty() || joint.upper.empty()) continue;
+    const double q = scene_.q[scene_.model.first_q[z(body)]], slack = 4 * 0x1p-53 * std::abs(q);  // a mimic's value is rounded twice
+    if (q >= joint.lower[0] - slack && q <= joint.upper[0] + slack) continue;
+    const bool turns = joint.type == JointType::revolute;
+    if (const auto it = given.find(name); it != given.end()) {
+      warn("angle outside its limits", it->second,
+           "joint " + name + " = " + number_text(q) + (turns ? " rad" : " m") + " lies outside its limits " + number_text(joint.lower[0]) + " to " + number_text(joint.upper[0]),
+           turns ? "a value in degrees is the usual cause" : "a value in millimetres is the usual cause");
+    } else if (++count <= 5) {
+      outside += (outside.empty() ? "" : ", ") + name + " = " + number_text(q) + " (" + number_text(joint.lower[0]) + " to " + number_text(joint.upper[0]) + ")";
+    }
+  }
+  if (count > 0)
+    scene_.notes.push_back("robot " + in_quotes(robot.name) + ": " + std::to_string(count) + (count == 1 ? " joint" : " joints") +
+                           " without a given value outside the limits: " + outside + (count > 5 ? ", ..." : ""));
+}
+
 void SceneLoader::read_robot(const Yaml& y) {
-  y.keys({"name", "urdf", "base", "pose", "joints", "joint_types", "armature"});
-  const RobotOptions options = urdf_options(y, new_name(y.at("name")));
+  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature"});
+  const RobotOptions options = robot_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
   Robot robot = add_robot(scene_.model, options);
   own_damping_.resize(own_damping_.size() + scene_.model.constraints.size() - before);
   const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
   grow_q();
-  if (options.base == RobotOptions::Base::free) set_pose(root, options.pose);
+  if (root != ground && scene_.model.bodies[z(root)].joint.type == JointType::floating) set_pose(root, options.pose);
   for (const auto& [body, values] : robot.start)
     for (std::size_t k = 0; k < values.size(); ++k) scene_.q[scene_.model.first_q[z(body)] + static_cast<Index>(k)] = values[k];
   if (y.has("joints")) set_joints(robot, y.at("joints"));
   set_mimics(robot);
+  check_ranges(robot, y);
   for (const auto& [link, frame] : robot.links) scene_.frames.emplace(robot.name + "/" + link, frame);
   scene_.notes.insert(scene_.notes.end(), robot.notes.begin(), robot.notes.end());
   scene_.warnings.insert(scene_.warnings.end(), robot.warnings.begin(), robot.warnings.end());

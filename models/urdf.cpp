@@ -1,54 +1,15 @@
 #include "models/urdf.h"
 
-#include <console_bridge/console.h>
-#include <urdf_parser/urdf_parser.h>
-
-#include <mutex>
+#include <urdf_model/model.h>
 
 #include <Eigen/Geometry>
 
+#include "models/inertia_check.h"
 #include "models/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {
 namespace {
-
-/// Collects what urdfdom says instead of printing it. console_bridge is global: one parse at a time.
-class Listener : public console_bridge::OutputHandler {
- public:
-  Listener() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
-  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && said.size() < 400) said += (said.empty() ? "" : "; ") + text.substr(0, 200);
-  }
-  std::string said;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  std::lock_guard<std::mutex> lock_;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& file, const std::string& text) {
-  Listener listener;
-  urdf::ModelInterfaceSharedPtr model;
-  std::string thrown;
-  try {
-    model = urdf::parseURDF(text);
-  } catch (const std::exception& e) {
-    thrown = e.what();
-  }
-  if (!model) throw ModelError(file, "robot", "urdfdom: " + listener.said + thrown, "a URDF 1.0 robot");
-  for (auto& [name, link] : model->links_) {  // the tree's own pointers would be released by a recursion as deep as the robot
-    link->child_links.clear();
-    link->child_joints.clear();
-  }
-  return model;
-}
 
 Vector3<double> vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -79,16 +40,49 @@ void sum_parts(const std::vector<Part>& parts, Body& body) {
     return;
   }
   for (const Part& p : parts) body.mass += p.mass, body.com += p.mass * p.com;
-  if (body.mass == 0) {
-    body.com.setZero();
-    return;
-  }
-  body.com /= body.mass;
+  if (body.mass == 0) body.com.setZero();
+  else body.com /= body.mass;
   for (const Part& p : parts) {
     const Vector3<double> d = p.com - body.com;
     body.inertia += p.inertia + p.mass * (d.squaredNorm() * Matrix3<double>::Identity() - d * d.transpose());
   }
   body.inertia = (body.inertia + body.inertia.transpose()).eval() / 2;
+}
+
+/// Moments of mass about a frame's origin, with the size of what was added: another route to what sum_parts computes.
+struct Moments {
+  double mass = 0, size = 0;
+  Vector3<double> first = Vector3<double>::Zero();
+  Matrix3<double> second = Matrix3<double>::Zero();
+  double reach = 0;  ///< largest distance of a centre of mass
+
+  static Moments of(double mass, const Vector3<double>& com, const Matrix3<double>& inertia) {
+    Moments m;
+    m.mass = mass, m.first = mass * com, m.reach = com.norm();
+    m.second = inertia + mass * (com.squaredNorm() * Matrix3<double>::Identity() - com * com.transpose());
+    m.size = inertia.norm() + mass * com.squaredNorm();
+    return m;
+  }
+  void add(const CheckedUrdf::Inertial& in, const Pose<double>& link_in_body) {
+    const Pose<double> X = link_in_body * in.origin;
+    const Moments m = of(in.mass, X.translation, X.rotation * in.inertia * X.rotation.transpose());
+    mass += m.mass, first += m.first, second += m.second, size += m.size, reach = std::max(reach, m.reach);
+  }
+  /// Relative to what this one was summed from.
+  [[nodiscard]] double distance(const Moments& sum) const {
+    const auto over = [](double error, double scale) { return error == 0 ? 0 : error / scale; };
+    return std::max({over(std::abs(mass - sum.mass), sum.mass), over((first - sum.first).norm(), sum.mass * sum.reach),
+                     over((second - sum.second).norm(), sum.size)});
+  }
+  [[nodiscard]] std::string text() const {
+    return number_text(mass) + " kg, (" + numbers_text(first) + ") kg m, (" + numbers_text(second.reshaped()) + ") kg m^2";
+  }
+};
+
+/// Unit vector of a direction of any length.
+Vector3<double> unit(const Vector3<double>& v) {
+  const double n = v.norm();
+  return n > 1e-100 && n < 1e100 ? Vector3<double>(v / n) : Vector3<double>(v.stableNormalized());
 }
 
 JointType type_of(const urdf::Joint& j) {
@@ -103,23 +97,26 @@ JointType type_of(const urdf::Joint& j) {
 class Loader {
  public:
   Loader(Model& model, const RobotOptions& options)
-      : model_(model), options_(options), checked_(check_urdf(options.file)), urdf_(parse(options.file, checked_.text)) {
+      : model_(model), options_(options), findings_(options.strict), checked_(check_urdf(options.file, findings_)),
+        urdf_(read_by_urdfdom(checked_, findings_)) {
     first_ = static_cast<Index>(model.bodies.size());
     check_names();
   }
 
   Robot run() {
     out_.name = options_.robot;
-    out_.notes = checked_.notes;
     add_root();
     walk();
     for (std::size_t i = 0; i < bodies_.size(); ++i) sum_parts(parts_[i], bodies_[i]);
-    check_massless();
+    check_totals();
     for (Body& b : bodies_) {
       validate_body(b, options_.file);
       out_.bodies.push_back(model_.add(std::move(b)));
     }
     add_mimics();
+    tally_.report(options_.file, findings_);
+    out_.notes = std::move(findings_.notes);
+    out_.warnings = std::move(findings_.warnings);
     return std::move(out_);
   }
 
@@ -145,36 +142,53 @@ class Loader {
     body.joint = std::move(joint);
     bodies_.push_back(std::move(body));
     parts_.emplace_back();
+    expected_.emplace_back();
     return first_ + static_cast<Index>(bodies_.size()) - 1;
   }
 
   /// Puts a link into a body (or the ground): its frame, inertia and shapes.
   void place(const std::string& link, const Frame& frame) {
     out_.links[link] = frame;
-    const auto shapes = checked_.shapes.find(link);
-    const bool has_shapes = shapes != checked_.shapes.end();
+    const CheckedUrdf::Link& said = checked_.links.at(link);
     if (frame.body == ground) {
-      if (has_shapes) out_.notes.push_back(options_.robot + "/" + link + ": fixed to the world, its collision shapes are left out");
+      if (!said.shapes.empty()) tally_.add("fixed to the world, collision shapes left out", options_.robot + "/" + link);
       return;
     }
     const auto k = static_cast<std::size_t>(frame.body - first_);
-    if (const auto& inertial = urdf_->links_.at(link)->inertial) parts_[k].push_back(part_of(*inertial, frame.placement));
-    if (!has_shapes) return;
-    for (Shape s : shapes->second) {
+    if (const auto& inertial = urdf_->links_.at(link)->inertial) {
+      judge_inertia(findings_, options_.file, said.inertial_place, said.inertial.mass, said.inertial.inertia);
+      parts_[k].push_back(part_of(*inertial, frame.placement));
+      expected_[k].add(said.inertial, frame.placement);
+    }
+    for (Shape s : said.shapes) {
       s.placement = frame.placement * s.placement;
       bodies_[k].shapes.push_back(s);
     }
   }
 
   void add_root() {
-    if (options_.base == RobotOptions::Base::fixed) return place(checked_.root, {ground, options_.pose});
+    const RobotOptions::Base base = base_of_root();
+    if (base == RobotOptions::Base::fixed) return place(checked_.root, {ground, options_.pose});
     Joint joint;
-    const bool planar = options_.base == RobotOptions::Base::planar;
+    const bool planar = base == RobotOptions::Base::planar;
     joint.name = options_.robot + "/base";
     joint.type = planar ? JointType::planar : JointType::floating;
     if (planar) joint.placement = options_.pose;
     out_.root_joint = joint.name;
     place(checked_.root, {add_body(checked_.root, ground, joint), {}});
+  }
+
+  /// A root link named world is the world, unless the scene asks for another base.
+  RobotOptions::Base base_of_root() {
+    if (checked_.root != "world") return options_.base;
+    const std::string element = "link \"world\" (line " + std::to_string(checked_.links.at("world").line) + ")";
+    if (!options_.base_given) {
+      findings_.note(options_.file + ": " + element + ": the root link is the world, so the base is fixed");
+      return RobotOptions::Base::fixed;
+    }
+    if (options_.base != RobotOptions::Base::fixed)
+      findings_.warn("moving world", options_.file, element, "the root link is named world, and moves because the scene says so", "base: fixed");
+    return options_.base;
   }
 
   /// Depth first, children in the order of the file.
@@ -209,7 +223,7 @@ class Loader {
     Joint out;
     out.name = options_.robot + "/" + row.name;
     out.type = type_of(j);
-    out.axis = vector(j.axis).normalized();
+    out.axis = unit(vector(j.axis));
     if (const auto it = options_.joint_types.find(row.name); it != options_.joint_types.end()) {
       out.type = it->second.type;
       out.axis2 = it->second.axis2;
@@ -218,58 +232,63 @@ class Loader {
     }
     const auto n = static_cast<std::size_t>(dof_count(out.type));
     const auto it = options_.armature.find(row.name);
-    out.armature.assign(n, it == options_.armature.end() ? row.armature : it->second);
+    const bool of_all = !row.armature_given && options_.armature_of_all >= 0;
+    out.armature.assign(n, it != options_.armature.end() ? it->second : of_all ? options_.armature_of_all : row.armature);
     out.damping.assign(n, j.dynamics ? j.dynamics->damping : 0);
     out.friction.assign(n, j.dynamics ? j.dynamics->friction : 0);
     if (!j.limits) return out;
-    const bool one = n == 1 && j.type != urdf::Joint::CONTINUOUS && row.range_given;
-    if (one) out.lower.assign(1, j.limits->lower), out.upper.assign(1, j.limits->upper);
+    if (n == 1 && row.range_given) out.lower.assign(1, row.lower), out.upper.assign(1, row.upper);
     if (row.effort_given) out.effort.assign(n, j.limits->effort);
     if (row.velocity_given) out.velocity.assign(n, j.limits->velocity);
     return out;
   }
 
-  /// A body without mass on it or outward of it moves freely unless its joint has armature.
-  void check_massless() const {
-    std::vector<double> mass(bodies_.size());
-    for (std::size_t i = bodies_.size(); i-- > 0;) {
+  /// Mass, first and second moments of every body about its frame, from our own reading of the file.
+  void check_totals() const {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const Body& b = bodies_[i];
-      mass[i] += b.mass;
-      if (b.parent >= first_) mass[static_cast<std::size_t>(b.parent - first_)] += mass[i];
-      const bool armature = !b.joint.armature.empty() && *std::min_element(b.joint.armature.begin(), b.joint.armature.end()) > 0;
-      if (mass[i] == 0 && !armature)
-        fail("link " + in_quotes(b.name), "has mass 0 kg outward of joint " + in_quotes(b.joint.name) + ", which has no armature",
-             "mass > 0 [kg], or armature > 0 [kg m^2 or kg]");
+      const Moments &said = expected_[i], held = Moments::of(b.mass, b.com, b.inertia);
+      const double slack = 30 * 0x1p-53 * static_cast<double>(1 + 3 * parts_[i].size());
+      if (!b.com.allFinite() || !b.inertia.allFinite() || !std::isfinite(b.mass) || held.distance(said) <= slack) continue;  // not finite: validate_body
+      fail("link " + in_quotes(b.name), "mass and moments about its frame: " + said.text() + " in the file, " + held.text() + " in the model",
+           "two that agree: please report this file");
     }
   }
 
   void add_mimics() {
     for (const CheckedUrdf::JointRow& row : checked_.joints) {
-      const auto& mimic = urdf_->joints_.at(row.name)->mimic;
-      if (!mimic) continue;
-      const std::string element = "joint " + in_quotes(row.name) + " <mimic> (line " + std::to_string(row.line) + ")";
-      const auto a = out_.joints.find(row.name), b = out_.joints.find(mimic->joint_name);
-      if (b == out_.joints.end()) fail(element, "joint " + in_quotes(mimic->joint_name) + " does not exist or is fixed", "a moving joint of this file");
-      if (a == out_.joints.end() || a->second == b->second) fail(element, "a joint cannot follow " + in_quotes(mimic->joint_name), "a moving joint and another one");
+      if (row.master.empty()) continue;
+      const std::string element = row.place + " <mimic>";
+      const auto a = out_.joints.find(row.name), b = out_.joints.find(row.master);
+      if (b == out_.joints.end() && urdf_->joints_.count(row.master)) {
+        findings_.warn("mimic of a fixed joint", options_.file, element, "joint " + in_quotes(row.master) + " is fixed: nothing to follow, the joint moves freely",
+                       "a moving joint of this file");
+        continue;
+      }
+      if (b == out_.joints.end()) fail(element, "joint " + in_quotes(row.master) + " does not exist", "a moving joint of this file");
+      if (a->second == b->second) fail(element, "a joint cannot follow " + in_quotes(row.master) + ", itself", "another moving joint");
       for (const Index i : {a->second, b->second})
         if (dof_count(model_.bodies[static_cast<std::size_t>(i)].joint.type) != 1)
           fail(element, "a joint with several degrees of freedom", "joints with one degree of freedom");
-      out_.mimics.push_back({a->second, b->second, mimic->multiplier, mimic->offset});
+      out_.mimics.push_back({a->second, b->second, row.multiplier, row.offset});
       Constraint c;
       c.name = options_.robot + "/" + row.name + " mimic";
       c.kind = Constraint::Kind::coupling;
-      c.terms = {{a->second, 0, 1, {}}, {b->second, 0, -mimic->multiplier, {}}};
+      c.terms = {{a->second, 0, 1, {}}, {b->second, 0, -row.multiplier, {}}};
       model_.constraints.push_back(std::move(c));
     }
   }
 
   Model& model_;
   const RobotOptions& options_;
+  Findings findings_;
+  Tally tally_;
   CheckedUrdf checked_;
-  urdf::ModelInterfaceSharedPtr urdf_;
+  std::shared_ptr<urdf::ModelInterface> urdf_;
   Index first_ = 0;
   std::vector<Body> bodies_;
   std::vector<std::vector<Part>> parts_;
+  std::vector<Moments> expected_;
   Robot out_;
 };
 

@@ -1,5 +1,6 @@
 #include "models/yaml.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -12,7 +13,10 @@ Yaml Yaml::open(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw ModelError(file, "file", "cannot be read", "a scene file (.yaml)");
   try {
-    const Yaml root(file, "", YAML::LoadFile(file), 1);
+    const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(file);
+    if (documents.size() > 1)
+      throw ModelError(file + ":" + std::to_string(std::max(documents[1].Mark().line, 0) + 1), "YAML", "a second document, after ---", "one document per file");
+    const Yaml root(file, "", documents.empty() ? YAML::Node() : documents[0], 1);
     if (!root.is_map()) root.fail("the file holds no mapping", "keys of a scene: robots, boxes, ...");
     return root;
   } catch (const YAML::BadFile&) {
@@ -23,7 +27,7 @@ Yaml Yaml::open(const std::string& file) {
 }
 
 void Yaml::fail(const std::string& problem, const std::string& accepted) const {
-  throw ModelError(file_ + ":" + std::to_string(line_), path_.empty() ? "scene" : path_, problem, accepted);
+  throw ModelError(file_and_line(), key(), problem, accepted);
 }
 
 Yaml Yaml::child(const std::string& key, const YAML::Node& node) const {

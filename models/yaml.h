@@ -16,8 +16,13 @@ class Yaml {
  public:
   /// Parses a file holding one mapping. @throws ModelError when it cannot be read or is no YAML.
   static Yaml open(const std::string& file);
+  /// A mapping made by the program in place of a file.
+  static Yaml of(const std::string& file, const YAML::Node& mapping) { return {file, "", mapping, 1}; }
 
   [[noreturn]] void fail(const std::string& problem, const std::string& accepted) const;
+  /// Where the node stands, as messages say it: `file:line` and `robots[0].joints.j`.
+  [[nodiscard]] std::string file_and_line() const { return file_ + ":" + std::to_string(line_); }
+  [[nodiscard]] std::string key() const { return path_.empty() ? "scene" : path_; }
 
   /// A mapping with these keys only, each at most once.
   void keys(std::initializer_list<const char*> accepted) const;

@@ -54,7 +54,8 @@ refused([tests / "defects", "nosuch"], "nosuch", "one_part_in_1e10")
 with tempfile.TemporaryDirectory() as folder:
     vector = pathlib.Path(folder) / "vector.json"
     for text, words in {"[1, 2, NaN, 4]": ["entry 2", "'NaN'"], "[1, 2": ["entry 1", "ends too early"],
-                        "[1, null]": ["entries"], "{}": ["object"]}.items():
+                        "[1, null]": ["entries"], "{}": ["object"], "[1, 1e999, 3]": ["entry 1", "1e999 is not a finite number"],
+                        "[-1e999": ["entry 0", "-1e999 is not a finite number"]}.items():
         vector.write_text(text)
         refused([delassus, "apply", "swimmer:2", "--op", "lcaba", "--solve", "--input", vector], str(vector), "finite numbers", *words)
     found = json.loads(printed([delassus, "stress", "--seed", "1", "--count", "2", "--json", "--folder", folder]))
@@ -63,6 +64,31 @@ with tempfile.TemporaryDirectory() as folder:
     found = json.loads(printed([delassus, "stress", "--seed", "1", "--count", "4", "--json", "--folder", folder, "--defect", "one_part_in_1e10"], code=1))
     if not pathlib.Path(found["failures"][0]["file"]).is_file():
         failures.append("stress --json --defect: no file of the failure")
+
+    # A robot's file is a scene; what is doubtful in it is told on both ways out, and an error with --strict.
+    robot = pathlib.Path(folder) / "arm.urdf"
+    robot.write_text("""<robot name="arm"><link name="world"/><link name="b"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+      <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link><link name="c"/>
+      <joint name="j" type="revolute"><parent link="world"/><child link="b"/><axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="1" velocity="1"/></joint>
+      <joint name="k" type="continuous"><parent link="b"/><child link="c"/><mimic joint="j" multiplier="-2"/></joint></robot>""")
+    with_armature = [robot, "--armature", "0.5"]
+    text = printed([delassus, "describe", *with_armature], "fixed base, 2 dofs", "2 kg", "revolute     -1 … 2", "follows -2 · j", "massless: arm/c", "the base is fixed")
+    for command in (["describe"], ["export"], ["apply", "--op", "lcaba", "--solve", "--damping", "1"], ["bench", "--budget", "0.001", "--op", "lcaba"],
+                    ["check", "--op", "lcaba"], ["accuracy", "--damping", "1e-4", "--no-time", "--op", "lcaba"]):
+        subject = ["--scene", *with_armature] if command[0] in ("bench", "check") else with_armature
+        extra = [] if command[0] == "export" else ["--json"]
+        done = run(delassus, *command, *subject, *extra)
+        if "warning: " not in done.stderr or "1 warning; --strict makes them errors" not in done.stderr or '"kind":"point mass"' not in done.stdout.replace('": "', '":"'):
+            failures.append(f"{command}: no warning: {done.stderr}{done.stdout[:300]}")
+        refused([delassus, *command, *subject, *extra, "--strict"], "arm.urdf", "link \"b\"", "strict mode")
+    refused([delassus, "describe", robot], "arm/c", "massless", "arm/k", "armature")
+    if json.loads(run(delassus, "export", *with_armature, "--base", "free").stdout)["dof"] != 8:
+        failures.append("export --base free: not 8 degrees of freedom")
+    refused([delassus, "describe", "cassie", "--base", "fixed"], "--base", "\"cassie\"", "robot's file")
+    refused([delassus, "describe", robot, "--base", "flying"], "--base", "flying")
+    refused([delassus, "describe", robot, "--armature", "1e999"], "--armature", "1e999")
+    robot.write_text("<?xml version=\"1.0\"?>")
+    refused([delassus, "describe", robot], str(robot), "no element")
 
 printed([delassus, "check", "cassie", "--digits", "--damping", "1e-12"], "WARNING: in double lcaba refuses", "lost_pivot")
 if "WARNING" in printed([delassus, "check", "cassie", "--digits", "--damping", "1e-4"]):

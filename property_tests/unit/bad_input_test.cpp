@@ -69,20 +69,26 @@ TEST(BadUrdf, every_fault_is_named) {
   const std::string ab = good("a") + good("b");
   const std::vector<Case> cases{
       {"empty file", "", {"XML"}},
+      {"only a declaration", "<?xml version=\"1.0\"?>", {"no element"}},
+      {"only a comment", "<!-- robot -->", {"no element"}},
+      {"only a document type", "<!DOCTYPE robot>", {"no element"}},
+      {"only an end", "</a>", {"root element"}},
+      {"a declaration and an end", "<?xml version=\"1.0\"?></robot>", {"root element"}},
+      {"a byte order mark", "\xef\xbb\xbf", {"XML"}},
+      {"zeros", std::string(7, '\0'), {"XML"}},
       {"no XML", "hello", {"XML"}},
       {"broken XML", "<robot name=\"r\"><link name=\"a\">", {"broken XML"}},
       {"another root", "<sdf/>", {"\"sdf\""}},
       {"no name", "<robot/>", {"name"}},
       {"empty robot", robot(""), {"no link"}},
-      {"negative mass", robot(link("a", inertial("-1"))), {"\"a\"", "\"-1\"", "kg", "line 2"}},
+      {"only xacro", robot("<xacro:include filename=\"x\"/>"), {"no link", "run xacro first"}},
+      {"a number of xacro", robot(link("a", inertial("${m}"))), {"\"${m}\" is not expanded", "run xacro first"}},
+      {"negative mass", robot(link("a", inertial("-1"))), {"\"a\"", "-1 kg", "line 2"}},
       {"mass NaN", robot(link("a", inertial("nan"))), {"\"a\"", "\"nan\""}},
       {"mass infinite", robot(link("a", inertial("1e999"))), {"1e999"}},
       {"mass with a unit", robot(link("a", inertial("1 kg"))), {"1 kg"}},
       {"mass missing", robot(link("a", "<inertial><inertia ixx=\"1\"/></inertial>")), {"<mass> is missing"}},
       {"moment missing", robot(link("a", inertial("1", "ixx=\"1\""))), {"ixy", "missing"}},
-      {"triangle", robot(link("a", inertial("1", "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3\""))), {"triangle inequality", "kg m^2"}},
-      {"negative moment", robot(link("a", inertial("1", "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"-1\""))), {"negative"}},
-      {"inertia without mass", robot(link("a", inertial("0"))), {"mass 0"}},
       {"origin infinite", robot(ab + joint("j", "a", "b", "<origin xyz=\"0 inf 0\"/>")), {"\"j\"", "0 inf 0"}},
       {"origin short", robot(ab + joint("j", "a", "b", "<origin xyz=\"0 0\"/>")), {"wrong length"}},
       {"zero axis", robot(ab + joint("j", "a", "b", "<axis xyz=\"0 0 0\"/>")), {"\"j\"", "0 0 0"}},
@@ -95,8 +101,6 @@ TEST(BadUrdf, every_fault_is_named) {
       {"same link name", robot(good("a") + good("a")), {"taken"}},
       {"same joint name", robot(ab + good("c") + joint("j", "a", "b") + joint("j", "a", "c")), {"taken", "\"j\""}},
       {"unknown type", robot(ab + joint("j", "a", "b", "", "ball")), {"\"ball\"", "revolute"}},
-      {"no limit", robot(ab + joint("j", "a", "b", "", "revolute")), {"<limit>"}},
-      {"limits crossed", robot(ab + joint("j", "a", "b", "<limit lower=\"1\" upper=\"0\"/>", "revolute")), {"lower"}},
       {"negative damping", robot(ab + joint("j", "a", "b", "<dynamics damping=\"-1\"/>")), {"damping", "-1"}},
       {"armature NaN", robot(ab + joint("j", "a", "b", "<dynamics armature=\"nan\"/>")), {"armature", "nan"}},
       {"no parent", robot(good("a") + "<joint name=\"j\" type=\"fixed\"><child link=\"a\"/></joint>"), {"<parent>"}},
@@ -104,9 +108,8 @@ TEST(BadUrdf, every_fault_is_named) {
       {"massless robot", robot(link("a", "")), {"r/a", "mass"}},
       {"mimic unknown", robot(ab + joint("j", "a", "b", "<mimic joint=\"x\"/>")), {"\"x\"", "mimic"}},
       {"mimic itself", robot(ab + joint("j", "a", "b", "<mimic joint=\"j\"/>")), {"\"j\"", "follow"}},
-      {"geometry unknown", robot(link("a", inertial("1") + "<collision><geometry><cone/></geometry></collision>")), {"cone", "capsule"}},
-      {"radius zero", robot(link("a", inertial("1") + "<collision><geometry><sphere radius=\"0\"/></geometry></collision>")), {"radius", "m"}},
-      {"no geometry", robot(link("a", inertial("1") + "<collision/>")), {"no geometry"}}};
+      {"radius negative", robot(link("a", inertial("1") + "<collision><geometry><sphere radius=\"-1\"/></geometry></collision>")), {"radius", "-1", "m"}},
+      {"radius no number", robot(link("a", inertial("1") + "<collision><geometry><sphere radius=\"x\"/></geometry></collision>")), {"radius", "\"x\""}}};
   for (const Case& c : cases) {
     const std::string message = complaint_of_urdf(c.what, c.text);
     for (const std::string& part : c.named) EXPECT_NE(message.find(part), std::string::npos) << c.what << ": " << message;

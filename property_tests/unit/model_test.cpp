@@ -45,14 +45,13 @@ TEST(model, refuses_bodies_that_cannot_be) {
   };
   EXPECT_NO_THROW(edited([](Body&) {})());
   expect_refusal(edited([](Body& b) { b.mass = -1; }), "robot.urdf: r/link mass: -1 kg");
-  expect_refusal(edited([](Body& b) { b.mass = 0; }), "r/link mass: 0 kg");
+  EXPECT_NO_THROW(edited([](Body& b) { b.mass = 0; })());
   expect_refusal(edited([&](Body& b) { b.mass = nan; }), "not finite");
   expect_refusal(edited([&](Body& b) { b.com[1] = inf; }), "not finite");
   expect_refusal(edited([&](Body& b) { b.inertia(0, 0) = nan; }), "not finite");
   expect_refusal(edited([](Body& b) { b.inertia(0, 1) = 0.5; }), "r/link inertia: is not symmetric");
-  expect_refusal(edited([](Body& b) { b.inertia(0, 0) = 0; }), "positive definite");
-  expect_refusal(edited([](Body& b) { b.inertia(0, 0) = -1; }), "positive definite");
-  expect_refusal(edited([](Body& b) { b.inertia(2, 2) = 2.001; }), "triangle inequality");
+  for (const double moment : {0.0, -1.0, 2.001})  // what M makes of it is for validate to say
+    EXPECT_NO_THROW(edited([&](Body& b) { b.inertia(0, 0) = moment; })());
   EXPECT_NO_THROW(edited([](Body& b) { b.inertia(2, 2) = 2; })()) << "a flat plate";
   expect_refusal(edited([](Body& b) { b.joint.axis = {0, 0, 2}; }), "joint hip axis: (0 0 2) is not a unit vector");
   expect_refusal(edited([&](Body& b) { b.joint.axis[0] = nan; }), "is not a unit vector");
