@@ -113,6 +113,7 @@ void check_link(const Spec& spec, std::size_t e) {
     if (b < 0 || b >= static_cast<Index>(spec.bodies.size()))
       reject(element, "body " + std::to_string(b), "0 to " + std::to_string(spec.bodies.size()) + " - 1");
   if (c.rows < 1) reject(element, std::to_string(c.rows) + " rows", "1 or more");
+  if (c.axis == std::array<int, 3>{0, 0, 0}) reject(element, "axis 0 0 0", "a non-zero axis of integers");
 }
 
 std::shared_ptr<Structure> structure(const Spec& spec) {
@@ -133,9 +134,37 @@ std::shared_ptr<Structure> structure(const Spec& spec) {
   return s;
 }
 
+/// Rotation of a quaternion of whole numbers: every entry a quotient of two, rounded once.
+Mat3 rotation(std::uint64_t seed) {
+  Random r(seed ^ 0x707);
+  const Vec3 v = nonzero_vector(r, 1000);
+  const double w = r.integer(-1000, 1000), squared = v.squaredNorm();
+  Mat3 whole = 2 * v * v.transpose() + 2 * w * cross_matrix(v);
+  whole.diagonal().array() += w * w - squared;
+  return whole / (w * w + squared);
+}
+
+/// H = diag(Q, Q) H diag(Q, Q)ᵀ, symmetric to the bit.
+void turn(const Mat3& Q, Matrix6<double>& H) {
+  Matrix6<double> out;
+  for (Index i = 0; i < 6; i += 3)
+    for (Index j = 0; j < 6; j += 3) out.block<3, 3>(i, j) = Q * H.block<3, 3>(i, j) * Q.transpose();
+  H = (out + out.transpose()) / 2;
+}
+
+void turn(const Mat3& Q, Vec6& x) { x << Q * x.head<3>(), Q * x.tail<3>(); }
+
 }  // namespace
 
 double power_of_ten(int decade) { return std::ldexp(1.0, static_cast<int>(std::lround(decade * 3.321928094887362))); }
+
+Problem<double> turned(Problem<double> p, std::uint64_t seed) {
+  const Mat3 Q = rotation(seed);
+  for (Vec6& x : p.S) turn(Q, x);
+  for (Vec6& x : p.K) turn(Q, x);
+  for (Matrix6<double>& H : p.H) turn(Q, H);
+  return p;
+}
 
 Built build(const Spec& spec) {
   const auto s = structure(spec);
@@ -159,6 +188,7 @@ Built build(const Spec& spec) {
     fill_joint(spec.joints[e], j.rows, s->dofs(j.body), out.problem.joint_K.data() + j.first);
     fill_damping(spec.joints[e].damping, j.row, j.rows, out.damping);
   }
+  if (spec.turn) out.problem = turned(std::move(out.problem), *spec.turn);
   return out;
 }
 

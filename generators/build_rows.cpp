@@ -17,7 +17,8 @@ Vec6 row_along(const Vec3& n, const Vec3* p) {
 /// Rows of a physical constraint on a body: fixed directions of the constraint, its point p from the body's own tree.
 void physical_rows(const LinkConstraintSpec& c, const Vec3& p, double sign, Vec6* K) {
   Random r(c.seed ^ 0x77);
-  const Vec3 n = about_unit(nonzero_vector(r, 2)), t = orthogonal(n);
+  const Vec3 drawn = nonzero_vector(r, 2);
+  const Vec3 n = about_unit(c.axis ? Vec3((*c.axis)[0], (*c.axis)[1], (*c.axis)[2]) : drawn), t = orthogonal(n);
   Index k = 0;
   if (c.kind == ConstraintKind::hinge) {
     K[k++] = sign * row_along(t, nullptr);
@@ -38,6 +39,7 @@ void physical_rows(const LinkConstraintSpec& c, const Vec3& p, double sign, Vec6
 
 /// The constraint's point: near the first body, and at the same place of the second when both are of one tree.
 Vec3 shared_point(const LinkConstraintSpec& c, const Place& first) {
+  if (c.at) return first.point + first.length * Vec3((*c.at)[0], (*c.at)[1], (*c.at)[2]);
   Random r(c.seed);
   return first.point + first.length / 2 * small_vector(r, 2);
 }

@@ -6,6 +6,7 @@
 #include "algorithms/status.h"
 #include "generators/draft.h"
 #include "generators/families_hard.h"
+#include "generators/families_linkages.h"
 
 namespace delassus::generators {
 namespace {
@@ -308,7 +309,7 @@ std::vector<FamilyRow> joined(std::vector<FamilyRow> first, const std::vector<Fa
 }  // namespace
 
 const std::vector<FamilyRow>& families() {
-  static const std::vector<FamilyRow> table = joined(common_families(), hard_families());
+  static const std::vector<FamilyRow> table = joined(joined(common_families(), hard_families()), linkage_families());
   return table;
 }
 

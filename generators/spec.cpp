@@ -79,8 +79,11 @@ json write(const BodySpec& b) {
 }
 
 json write(const LinkConstraintSpec& c) {
-  return {{"kind", constraint_names[static_cast<std::size_t>(c.kind)]}, {"rows", c.rows}, {"bodies", c.bodies},
-          {"seed", c.seed}, {"damping", write(c.damping)}};
+  json j{{"kind", constraint_names[static_cast<std::size_t>(c.kind)]}, {"rows", c.rows}, {"bodies", c.bodies},
+         {"seed", c.seed}, {"damping", write(c.damping)}};
+  if (c.at) j["at"] = *c.at;
+  if (c.axis) j["axis"] = *c.axis;
+  return j;
 }
 
 json write(const JointConstraintSpec& c) {
@@ -123,6 +126,8 @@ LinkConstraintSpec read_link(const Reader& r) {
   c.bodies = r.get<std::vector<Index>>("bodies", "a list of bodies");
   c.seed = r.get<std::uint64_t>("seed", seed_text);
   c.damping = read_damping(r.child("damping"));
+  c.at = r.optional<std::array<int, 3>>("at", triple);
+  c.axis = r.optional<std::array<int, 3>>("axis", triple);
   return c;
 }
 
@@ -157,6 +162,7 @@ std::string to_json(const Spec& spec) {
   for (const BodySpec& b : spec.bodies) j["bodies"].push_back(write(b));
   for (const LinkConstraintSpec& c : spec.links) j["links"].push_back(write(c));
   for (const JointConstraintSpec& c : spec.joints) j["joints"].push_back(write(c));
+  if (spec.turn) j["turn"] = *spec.turn;
   return j.dump(1);
 }
 
@@ -167,6 +173,7 @@ Spec from_json(const std::string& text, const std::string& file) {
   Spec spec;
   spec.family = r.get<std::string>("family", "a name");
   spec.seed = r.get<std::uint64_t>("seed", seed_text);
+  spec.turn = r.optional<std::uint64_t>("turn", seed_text);
   r.for_each("bodies", [&](const Reader& x) { spec.bodies.push_back(read_body(x)); });
   r.for_each("links", [&](const Reader& x) { spec.links.push_back(read_link(x)); });
   r.for_each("joints", [&](const Reader& x) { spec.joints.push_back(read_joint(x)); });

@@ -52,6 +52,8 @@ struct LinkConstraintSpec {
   Index rows = 1;                             ///< generic only
   std::vector<Index> bodies;                  ///< 1, 2 or more distinct bodies (one: to the ground); physical kinds 1 or 2
   std::uint64_t seed = 0;                     ///< equal seeds, kinds and bodies give coincident constraints
+  std::optional<std::array<int, 3>> at, axis; ///< of physical kinds: the point, from the first body's joint point in its
+                                              ///< 10^length_decade m, and the free axis; absent: by the seed
   DampingSpec damping;
 };
 
@@ -68,6 +70,7 @@ struct Spec {
   std::vector<BodySpec> bodies;
   std::vector<LinkConstraintSpec> links;
   std::vector<JointConstraintSpec> joints;    ///< their rows follow those of `links`
+  std::optional<std::uint64_t> turn;          ///< the whole in axes turned by a rotation of this seed, which rounds the numbers
 };
 
 /// Degrees of freedom of a body's joint.

@@ -49,7 +49,62 @@ const MatrixX<Rational>& exact_definition(Function f, const Case& c) {
   return f == Function::apply ? *known.exact_A : *known.exact_inverse;
 }
 
+std::vector<Index> hard_rows(const Case& c) {
+  std::vector<bool> in_block(static_cast<std::size_t>(c.rows()), false);
+  for (const auto& b : c.damping.blocks)
+    for (Index r = 0; r < b.R_inverse.rows(); ++r) in_block[static_cast<std::size_t>(b.row + r)] = true;
+  std::vector<Index> out;
+  for (Index r = 0; r < c.rows(); ++r)
+    if (!in_block[static_cast<std::size_t>(r)] && c.damping.diagonal[static_cast<std::size_t>(r)] == 0) out.push_back(r);
+  return out;
+}
+
+/// Σ_j b_rj² (M⁻¹)_jj of every row, b_rj² = Σ |k_ω|²|s_ω|² + |k_v|²|s_v|².
+VectorX<Quad> row_sizes(const Problem<double>& p, const MatrixX<Quad>& M) {
+  const Structure& s = *p.structure;
+  const MatrixX<Quad> M_inverse = reference::PivotedLdlt<Quad>(M).inverse();
+  VectorX<Quad> size = VectorX<Quad>::Constant(s.rows, Quad(0));
+  for (const auto& e : s.link_constraints)
+    for (const auto& link : e.links)
+      for (const Index j : reference::path_dofs(s, link.body))
+        for (Index r = 0; r < e.rows; ++r) {
+          const auto &k = p.K[static_cast<std::size_t>(link.first + r)], &x = p.S[static_cast<std::size_t>(j)];
+          const double product = k.head<3>().squaredNorm() * x.head<3>().squaredNorm() + k.tail<3>().squaredNorm() * x.tail<3>().squaredNorm();
+          size[e.row + r] += Quad(product) * M_inverse(j, j);
+        }
+  for (const auto& e : s.joint_constraints)
+    for (Index r = 0; r < e.rows; ++r)
+      for (Index j = 0; j < s.dofs(e.body); ++j) {
+        const Quad k = p.joint_K[static_cast<std::size_t>(e.first + r * s.dofs(e.body) + j)];
+        size[e.row + r] += k * k * M_inverse(s.first_dof[static_cast<std::size_t>(e.body)] + j, s.first_dof[static_cast<std::size_t>(e.body)] + j);
+      }
+  return size;
+}
+
 }  // namespace
+
+bool dependent_to_rounding(const Case& c) {
+  std::optional<bool>& known = c.known->dependent_to_rounding;
+  if (known) return *known;
+  const std::vector<Index> rows = hard_rows(c);
+  const auto m = static_cast<Index>(rows.size());
+  if (m == 0 || !sensitivity(c)) return *(known = false);
+  const reference::Dense<Quad>& d = sensitivity(c)->matrices();
+  const VectorX<Quad> size = row_sizes(c.problem, d.M);
+  // PivotedLdlt loses pivots below 30 eps · steps · scale, eps of Quad; asked for is (30 eps · m)² · size, eps of double.
+  const double noise = pass_below * unit_roundoff<double> * static_cast<double>(m);
+  const Quad unit = Quad(noise) * Quad(noise) / Quad(pass_below * unit_roundoff<Quad>);
+  MatrixX<Quad> A(m, m);
+  VectorX<Quad> scale(m);
+  for (Index r = 0; r < m; ++r) {
+    const Index row = rows[static_cast<std::size_t>(r)];
+    const Quad root = sqrt(Quad(size[row]));  // rows in units of their size
+    if (root == Quad(0)) return *(known = true);
+    scale[r] = unit;
+    for (Index k = 0; k < m; ++k) A(r, k) = d.A0(row, rows[static_cast<std::size_t>(k)]) / root / sqrt(Quad(size[rows[static_cast<std::size_t>(k)]]));
+  }
+  return *(known = !reference::PivotedLdlt<Quad>(std::move(A), scale).regular());
+}
 
 const char* why_no_bound(Function f, const Case& c) {
   const Structure& s = *c.problem.structure;
@@ -58,6 +113,7 @@ const char* why_no_bound(Function f, const Case& c) {
   if (!sensitivity(c)) return "M is singular";
   if (!within_double(c)) return "A is beyond 2^±900, where bounds leave the range of double";
   if (f == Function::solve && !sensitivity(c)->regular()) return "A is singular";
+  if (f == Function::solve && dependent_to_rounding(c)) return "hard rows depend on others to the rounding of their numbers";
   return nullptr;
 }
 

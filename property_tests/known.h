@@ -35,7 +35,7 @@ struct Known {
   std::optional<reference::Sensitivity> sensitivity;
   std::string no_sensitivity;
   std::optional<MatrixX<Quad>> A, A_inverse;
-  std::optional<bool> damped;
+  std::optional<bool> damped, dependent_to_rounding;
   std::optional<reference::Dense<Rational>> exact;
   std::optional<MatrixX<Rational>> exact_A, exact_inverse;
   std::optional<bool> exactly_regular;
@@ -45,6 +45,9 @@ struct Known {
 
 /// Reason why there is no bound for this function on this case (size, M or A singular); nullptr: there is one.
 [[nodiscard]] const char* why_no_bound(Function f, const Case& c);
+/// Some hard row depends on others as far as the rounding of its numbers can tell, by hard_rows.h's size in Quad: regular in
+/// rational numbers it may be all the same.
+[[nodiscard]] bool dependent_to_rounding(const Case& c);
 /// κ_∞(A). Needs why_no_bound(solve) == nullptr.
 [[nodiscard]] double condition(const Case& c);
 /// ‖|M⁻¹||M|‖: how many times larger than in the entries of M an error of M⁻¹ may be. Needs why_no_bound(apply) == nullptr.

@@ -84,7 +84,9 @@ const char* why_not_refusal(const OperatorRow& op, const Case& c) {
   if (!op.solves) return "has no solve";
   if (!c.exact || !std::get<Maker<Rational>>(op.makers)) return "too large for exact arithmetic";
   if (const char* reason = why_no_bound(apply, c)) return reason;
-  return damped(c) ? "nothing to refuse: R⁻¹ > 0" : nullptr;
+  if (damped(c)) return "nothing to refuse: R⁻¹ > 0";
+  const bool by_rounding_only = dependent_to_rounding(c) && exactly_regular(c);
+  return by_rounding_only ? "its hard rows depend on others but for the rounding of their numbers" : nullptr;
 }
 
 /// Hard or dependent rows. Solved in rational numbers: solved in double. Refused in rational numbers: refused in double,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/delassus.h"
+#include "generators/build.h"
 #include "models/scene.h"
 #include "property_tests/verdict.h"
 #include "reference/definition.h"
@@ -140,6 +141,16 @@ TEST(HardRows, WristSingularity) {
       error = std::max(error, std::fabs(static_cast<double>(Rational(said.f[r]) - exact(r, 0))));
     }
     EXPECT_LT(error / (unit_roundoff<double> * largest), laws::pass_below) << bend;
+  }
+}
+
+TEST(HardRows, CassieTurned) {
+  const Problem<double> p = problem_of(open_scene("cassie"));
+  const auto op = find_operator("kkt_elimination").make<double>();
+  op->analyze(p.structure);
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    ASSERT_TRUE(op->update(generators::turned(p, seed), Damping<double>::uniform(24, 0)).ok());
+    EXPECT_EQ(op->dependent_rows().size(), 4u) << seed;
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "property_tests/defects_wrong.h"
+#include "property_tests/diagonal_rule.h"
 #include "property_tests/rank.h"
 
 namespace delassus::laws {
@@ -55,6 +56,20 @@ TEST(Rank, DependentRowsCanFail) {
   OperatorRow refusing = find_operator("dense_refined");
   refusing.name = "kkt_elimination";
   EXPECT_NE(dependent_rows_wrong(refusing), "");
+}
+
+/// Linkages along the axes pass by the rule of A's diagonal, turned ones do not.
+TEST(Rank, LawsOfTurnedAxesCanFail) {
+  const auto passed = [](const char* law, const OperatorRow& row, std::uint64_t seed) {
+    return check(find_law(law), row, make_case("crank_rocker", 4, seed)).passed();
+  };
+  int failed = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const char* law : {"rank in turned axes", "rank reordered", "rank in other units", "consistent rows answered"})
+      EXPECT_TRUE(passed(law, find_operator("kkt_elimination"), seed)) << law << seed;
+    failed += passed("rank in turned axes", diagonal_rule(), seed) ? 0 : 1;
+  }
+  EXPECT_GT(failed, 5);
 }
 
 /// Rows that contradict one another, answered in silence with the forces of R⁻¹ + 2^softness.
