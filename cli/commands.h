@@ -23,6 +23,7 @@ void add_export(CLI::App& app, Run& run);
 void add_accuracy(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_report(CLI::App& app, Run& run);
+void add_survey(CLI::App& app, Run& run);
 void add_stress(CLI::App& app, Run& run);
 void add_replay(CLI::App& app, Run& run);
 

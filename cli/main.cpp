@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   limit_memory();
   delassus::laws::count_allocations();
   Run run;
-  for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_accuracy, add_report, add_stress, add_replay}) add(app, run);
+  for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_accuracy, add_report, add_stress, add_survey, add_replay}) add(app, run);
   if (argc > 1 && unknown_subcommand(app, argv[1]))
     return fail("there is no subcommand " + std::string(argv[1]) + " (accepted: " + subcommand_names(app) + ")", bad_input);
   try {

@@ -51,6 +51,18 @@ refused([tests / "certificate", "--divide", "0"], "--divide", "'0'", "a finite n
 refused([tests / "hard_cases", "--family", "nosuch"], "nosuch", "stiffest")
 refused([tests / "defects", "nosuch"], "nosuch", "one_part_in_1e10")
 
+refused([delassus, "survey", "/no/such/folder"], "/no/such/folder", "a folder with robots")
+with tempfile.TemporaryDirectory() as folder:
+    refused([delassus, "survey", folder], folder, "holds no robot")
+    robots = pathlib.Path(__file__).parent.parent / "models/robots"
+    (pathlib.Path(folder) / "a.urdf").write_text((robots / "go2.urdf").read_text())
+    (pathlib.Path(folder) / "b.urdf").write_text("<robot name='r'><link name='l'>")
+    (pathlib.Path(folder) / "c.urdf").write_text("<!-- nothing -->")
+    totals = json.loads(printed([delassus, "survey", folder, "--json"]))["totals"]
+    if (totals["loads"], totals["refused_rightly"], totals["differ"]) != (1, 2, 0) or not 0 < totals["worst_ratios"]["M"] < 30:
+        failures.append(f"survey: {totals}")
+    printed([delassus, "survey", folder], "3 files", "refused, rightly", "urdfdom does not read it")
+
 with tempfile.TemporaryDirectory() as folder:
     vector = pathlib.Path(folder) / "vector.json"
     for text, words in {"[1, 2, NaN, 4]": ["entry 2", "'NaN'"], "[1, 2": ["entry 1", "ends too early"],

@@ -1,0 +1,293 @@
+#include "cli/survey_file.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "algorithms/delassus.h"
+#include "models/robot.h"
+#include "property_tests/verdict.h"
+#include "reference/sensitivity.h"
+#include "reference/urdf_witness.h"
+
+namespace delassus::cli {
+
+namespace {
+
+using reference::UrdfMatrices;
+using reference::UrdfWitness;
+
+std::string bytes_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string extension(const std::string& file) {
+  std::string e = std::filesystem::path(file).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return e;
+}
+
+/// Name of the first element of an XML text: "robot", "mujoco", "sdf", … or "".
+std::string root_element(const std::string& text) {
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    if (text.compare(at, 4, "<!--") == 0) at = text.find("-->", at);
+    else if (text.compare(at, 2, "<?") == 0 || text.compare(at, 2, "<!") == 0) at = text.find('>', at);
+    else {
+      const std::size_t end = text.find_first_of(" \t\r\n/>", at + 1);
+      return text.substr(at + 1, (end == std::string::npos ? text.size() : end) - at - 1);
+    }
+    if (at == std::string::npos) break;
+  }
+  return {};
+}
+
+/// Collects errors of urdfdom.
+class Said : public console_bridge::OutputHandler {
+ public:
+  Said() { console_bridge::useOutputHandler(this); }
+  ~Said() override { console_bridge::restorePreviousOutputHandler(); }
+  Said(const Said&) = delete;
+  Said& operator=(const Said&) = delete;
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && said.empty()) said = text;
+  }
+  std::string said;
+};
+
+/// A message without what differs from file to file: names, numbers, lines, what is accepted.
+std::string kind_of(const std::string& file, std::string why) {
+  if (why.rfind(file + ": ", 0) == 0) why = why.substr(file.size() + 2);
+  why = why.substr(0, why.find(" (accepted"));
+  std::string out;
+  for (std::size_t i = 0; i < why.size(); ++i) {
+    const char c = why[i];
+    const bool number = std::isdigit(static_cast<unsigned char>(c)) && (i == 0 || !std::isalnum(static_cast<unsigned char>(why[i - 1])));
+    if (c == '"') {
+      const std::size_t end = why.find('"', i + 1);
+      if (end == std::string::npos) break;
+      out += "\"…\"";
+      i = end;
+    } else if (number) {
+      while (i + 1 < why.size() && (std::isalnum(static_cast<unsigned char>(why[i + 1])) || why[i + 1] == '.' || ((why[i + 1] == '-' || why[i + 1] == '+') && (why[i] == 'e' || why[i] == 'E')))) ++i;
+      out += "#";
+    } else {
+      out += c;
+    }
+  }
+  return out.substr(0, 160);
+}
+
+struct Loaded {
+  Model model;
+  Robot robot;
+};
+
+Loaded load(const std::string& file, RobotOptions::Base base, bool given, const SurveyOptions& o) {
+  Loaded out;
+  RobotOptions options;
+  options.file = file, options.robot = "robot";
+  options.base = base, options.base_given = given;
+  options.strict = o.strict, options.armature_of_all = o.armature;
+  out.robot = add_robot(out.model, options);
+  validate(out.model, file);
+  return out;
+}
+
+/// A configuration in general position; the same for the same seed everywhere.
+VectorX<double> pose(const Model& model, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  const auto number = [&] { return 2 * std::ldexp(static_cast<double>(engine() >> 11), -53) - 1; };
+  VectorX<double> q(model.q_size());
+  for (Index k = 0; k < q.size(); ++k) q[k] = number();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const JointType type = model.bodies[b].joint.type;
+    if (type == JointType::revolute) q[model.first_q[b]] *= 3;
+    if (type == JointType::floating) q.segment<4>(model.first_q[b] + 3).normalize();
+    if (type == JointType::spherical) q.segment<4>(model.first_q[b]).normalize();
+  }
+  return q;
+}
+
+/// At most six of a list, spread over it.
+std::vector<Index> some(const std::vector<Index>& all) {
+  constexpr std::size_t most = 6;
+  if (all.size() <= most) return all;
+  std::vector<Index> out;
+  for (std::size_t k = 0; k < most; ++k) out.push_back(all[k * all.size() / most]);
+  return out;
+}
+
+struct Ratios {
+  double M = 0, J = 0, A = 0, apply = 0;
+};
+
+void raise(double& largest, double ratio) { largest = std::max(largest, std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio); }
+
+double judged(const MatrixX<Quad>& x, const MatrixX<Quad>& y, const MatrixX<Quad>& bound, const char* name) {
+  if (x.rows() != y.rows() || x.cols() != y.cols()) return std::numeric_limits<double>::infinity();
+  return laws::judge(MatrixX<Quad>(x - y), bound, unit_roundoff<double>, name).ratio;
+}
+
+/// A0 of an operator, column by column, against the definition.
+void judge_operator(const Problem<double>& problem, const Damping<double>& none, const reference::Sensitivity& sensitivity, double& largest) {
+  const Index m = problem.structure->rows;
+  const auto op = find_operator("aba_sweep").make<double>();
+  op->analyze(problem.structure);
+  static_cast<void>(op->update(problem, none));
+  Workspace<double> workspace(op->workspace(m));
+  MatrixX<double> A(m, m);
+  if (!op->apply(MatrixX<double>::Identity(m, m), A, workspace).ok()) return raise(largest, std::numeric_limits<double>::infinity());
+  const MatrixX<Quad> error = A.cast<Quad>() - sensitivity.matrices().A0;
+  for (Index j = 0; j < m; ++j) {
+    const VectorX<double> bound = sensitivity.apply_sensitivity(VectorX<double>::Unit(m, j));
+    raise(largest, laws::judge(error.col(j), bound.cast<Quad>(), unit_roundoff<double>, "apply").ratio);
+  }
+}
+
+/// `witness` is null for a file that only its own library reads: then the operator is held against the definition alone.
+void compare(Loaded& loaded, const UrdfWitness* witness, const SurveyOptions& o, Ratios& out) {
+  std::vector<Index> welded;
+  if (witness != nullptr) {
+    welded = some(witness->leaves());
+    for (const Index i : welded) {
+      Constraint c;
+      c.kind = Constraint::Kind::weld;
+      const std::string& name = witness->links[static_cast<std::size_t>(i)].name;
+      const auto it = loaded.robot.links.find(name);
+      if (it == loaded.robot.links.end()) throw std::runtime_error("link " + name + " is not in the model");
+      c.a = it->second;
+      loaded.model.constraints.push_back(c);
+    }
+  }
+  if (loaded.model.dofs() == 0) return;
+  for (int k = 0; k < o.poses; ++k) {
+    const VectorX<double> q = pose(loaded.model, static_cast<std::uint64_t>(k) + 1);
+    const Problem<double> problem = kinematics<double>(loaded.model, q);
+    const Damping<double> none = Damping<double>::uniform(problem.structure->rows, 0);
+    const reference::Sensitivity sensitivity(problem, none);
+    const reference::Dense<Quad>& ours = sensitivity.matrices();
+    if (problem.structure->rows > 0) judge_operator(problem, none, sensitivity, out.apply);
+    if (witness == nullptr) continue;
+    const UrdfMatrices theirs = reference::urdf_matrices(*witness, loaded.model, "robot", q, welded);
+    raise(out.M, judged(ours.M, theirs.M, theirs.M_bound, "M"));
+    raise(out.J, judged(ours.J, theirs.J, theirs.J_bound, "J"));
+    if (theirs.regular) raise(out.A, judged(ours.A0, theirs.A0, theirs.A_bound, "J M⁻¹ Jᵀ"));
+  }
+}
+
+json number_json(double x) { return std::isfinite(x) ? json(x) : json("infinity"); }
+
+/// Mass of all links that something moves.
+double moved_mass(const UrdfWitness& w, bool base_moves) {
+  double mass = 0;
+  std::vector<char> moved(w.links.size());
+  for (const Index i : w.order) {
+    const auto k = static_cast<std::size_t>(i);
+    const Index j = w.links[k].joint;
+    moved[k] = j < 0 ? base_moves : moved[static_cast<std::size_t>(w.joints[static_cast<std::size_t>(j)].parent)] || w.joints[static_cast<std::size_t>(j)].kind != UrdfWitness::Kind::fixed;
+    if (moved[k]) mass += w.links[k].mass;
+  }
+  return mass;
+}
+
+void loaded_json(Loaded& loaded, UrdfWitness* witness, const SurveyOptions& o, json& j) {
+  j["state"] = "loads";
+  j["bodies"] = loaded.model.bodies.size();
+  j["dof"] = loaded.model.dofs();
+  double mass = 0;
+  for (const Body& b : loaded.model.bodies) mass += b.mass;
+  j["mass"] = mass;
+  j["warnings"] = json::array();
+  for (const Warning& w : loaded.robot.warnings) j["warnings"].push_back({{"kind", w.kind}, {"text", w.text}});
+  j["notes"] = loaded.robot.notes;
+  Ratios r;
+  try {
+    if (witness != nullptr) {
+      for (auto& joint : witness->joints)
+        if (joint.armature == 0 && o.armature >= 0) joint.armature = o.armature;
+      const double theirs = moved_mass(*witness, !loaded.robot.root_joint.empty());
+      if (std::fabs(mass - theirs) >= laws::pass_below * unit_roundoff<double> * theirs * static_cast<double>(witness->links.size()))
+        throw std::runtime_error(json(mass).dump() + " kg in the model, " + json(theirs).dump() + " kg in the file");
+    }
+    compare(loaded, witness, o, r);
+    j["ratios"] = {{"M", number_json(r.M)}, {"J", number_json(r.J)}, {"A", number_json(r.A)}, {"apply", number_json(r.apply)}};
+    if (std::max({r.M, r.J, r.A, r.apply}) >= laws::pass_below) j["differs"] = "ratio " + json(number_json(std::max({r.M, r.J, r.A, r.apply}))).dump();
+  } catch (const std::exception& e) {
+    j["differs"] = e.what();
+  }
+}
+
+/// Why a refusal is right without a look at the message, or null.
+json right(const json& j) {
+  if (j.contains("urdfdom") && !j["urdfdom"].is_null()) return "urdfdom does not read it";
+  if (j.contains("regular") && !j["regular"]["free"].get<bool>() && !j["regular"]["fixed"].get<bool>()) return "M is singular or indefinite";
+  return nullptr;
+}
+
+}  // namespace
+
+json urdfdom_says(const std::string& file) {
+  const std::string text = bytes_of(file);
+  if (text.find('<') == std::string::npos) return "no XML";
+  Said listener;
+  try {
+    if (urdf::parseURDF(text)) return nullptr;
+  } catch (const std::exception& e) {
+    return std::string(e.what());
+  }
+  return listener.said.empty() ? "no model" : listener.said;
+}
+
+bool is_robot_file(const std::string& file) {
+  const std::string e = extension(file);
+  if (e == ".urdf") return true;
+  if (e != ".xml" && e != ".sdf") return false;
+  const std::string root = root_element(bytes_of(file));
+  return e == ".xml" ? root == "mujoco" : root == "sdf";
+}
+
+json survey_file(const std::string& file, const json& urdfdom, const SurveyOptions& o) {
+  json j = {{"file", file}};
+  std::optional<UrdfWitness> witness;
+  if (extension(file) == ".urdf") {
+    j["urdfdom"] = urdfdom;
+    j["witness"] = nullptr;
+    try {
+      witness = reference::read_urdf_witness(file);
+      j["moving"] = witness->moving();
+      j["regular"] = {{"free", reference::urdf_regular(*witness, true)}, {"fixed", reference::urdf_regular(*witness, false)}};
+    } catch (const std::exception& e) {
+      j["witness"] = e.what();
+    }
+  }
+  const auto attempt = [&](RobotOptions::Base base, bool given) {
+    try {
+      Loaded loaded = load(file, base, given, o);
+      j["base"] = loaded.robot.root_joint.empty() ? "fixed" : "free";
+      loaded_json(loaded, witness ? &*witness : nullptr, o, j);
+      return true;
+    } catch (const ModelError& e) {
+      j["state"] = "refused";
+      if (!j.contains("why")) j["why"] = e.what(), j["kind"] = kind_of(file, e.what());
+    } catch (const std::exception& e) {
+      j["state"] = "refused";
+      j["why"] = j["kind"] = std::string("internal error: ") + e.what();
+      j["differs"] = e.what();
+    }
+    return false;
+  };
+  const bool free = o.base != "fixed" && attempt(RobotOptions::Base::free, o.base == "free");
+  if (!free && o.base != "free" && attempt(RobotOptions::Base::fixed, true) && o.base == "auto") j["free_base"] = j["kind"];
+  if (j["state"] == "refused") j["right"] = right(j);
+  return j;
+}
+
+}  // namespace delassus::cli
