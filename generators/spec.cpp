@@ -1,5 +1,7 @@
 #include "generators/spec.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "algorithms/status.h"
@@ -52,7 +54,9 @@ class Reader {
   template <class T> T convert(const json& value, const char* key, const char* accepted) const {
     try {
       if (std::is_integral_v<T> && !value.is_number_integer()) fail(std::string(key) + " is " + value.dump(), accepted);
-      return value.get<T>();
+      const T out = value.get<T>();
+      if (json(out) != value) fail(std::string(key) + " is " + value.dump(), accepted);  // 1.5 or a fourth entry would be dropped
+      return out;
     } catch (const json::exception&) {
       fail(std::string(key) + " is " + value.dump(), accepted);
     }
@@ -140,6 +144,22 @@ JointConstraintSpec read_joint(const Reader& r) {
   return c;
 }
 
+/// Every key of `said` must be one that is written.
+void check_keys(const json& said, const json& written, const std::string& file, const std::string& element) {
+  if (said.is_array() && written.is_array())
+    for (std::size_t i = 0; i < std::min(said.size(), written.size()); ++i)
+      check_keys(said[i], written[i], file, element + "[" + std::to_string(i) + "]");
+  if (!said.is_object() || !written.is_object()) return;
+  for (const auto& [key, value] : said.items()) {
+    if (!written.contains(key)) {
+      std::string accepted;
+      for (const auto& [known, ignored] : written.items()) accepted += (accepted.empty() ? "" : ", ") + known;
+      throw ModelError(file, element, "has the unknown key \"" + key + "\"", accepted);
+    }
+    check_keys(value, written[key], file, element + "." + key);
+  }
+}
+
 }  // namespace
 
 Index dof_count(const BodySpec& b) {
@@ -177,6 +197,7 @@ Spec from_json(const std::string& text, const std::string& file) {
   r.for_each("bodies", [&](const Reader& x) { spec.bodies.push_back(read_body(x)); });
   r.for_each("links", [&](const Reader& x) { spec.links.push_back(read_link(x)); });
   r.for_each("joints", [&](const Reader& x) { spec.joints.push_back(read_joint(x)); });
+  check_keys(j, json::parse(to_json(spec)), file, "spec");
   return spec;
 }
 

@@ -129,7 +129,8 @@ class Fuzz {
 std::vector<fs::path> corpus_of(const Options& o) {
   std::vector<fs::path> out;
   if (fs::is_directory(o.corpus))
-    for (const auto& entry : fs::directory_iterator(o.corpus)) out.push_back(entry.path());
+    for (const auto& entry : fs::directory_iterator(o.corpus))
+      if (entry.path().has_extension()) out.push_back(entry.path());
   std::sort(out.begin(), out.end());
   return out;
 }

@@ -1,4 +1,5 @@
 // The sound texts that the fuzz of the loaders starts from.
+#include "generators/spec.h"
 #include "property_tests/fuzz_judge.h"
 
 namespace delassus {
@@ -13,7 +14,6 @@ const char* const arm = R"(<?xml version="1.0" encoding="utf-8"?>
       <mass value="4.5"/>
       <inertia ixx="0.05" ixy="0.001" ixz="-0.002" iyy="0.06" iyz="0.003" izz="0.07"/>
     </inertial>
-    <collision><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.3 0.1"/></geometry></collision>
   </link>
   <link name="upper">
     <inertial><origin xyz="0 0 0.2"/><mass value="1.25"/><inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.01"/></inertial>
@@ -21,6 +21,7 @@ const char* const arm = R"(<?xml version="1.0" encoding="utf-8"?>
   </link>
   <link name="lower">
     <inertial><origin xyz="0 0 0.15" rpy="0 0.5 0"/><mass value="0.75"/><inertia ixx="0.011" ixy="0.0005" ixz="0" iyy="0.012" iyz="0" izz="0.006"/></inertial>
+    <collision><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.3 0.1"/></geometry></collision>
   </link>
   <link name="tip">
     <inertial><mass value="0.125"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial>
@@ -68,17 +69,21 @@ contacts: detect
 damping: 1.0e-4
 )";
 
-const char* const spec = R"({
- "family": "fuzz", "seed": 7,
- "bodies": [
-  {"parent": -1, "joint": "revolute", "seed": 1},
-  {"parent": 0, "joint": "spherical", "mass_decade": -1, "seed": 2},
-  {"parent": 0, "joint": "prismatic", "axis": [1, 0, 0], "seed": 3}
- ],
- "links": [{"kind": "point", "bodies": [1, 2], "seed": 4, "damping": {"kind": "rows", "low": -2, "high": 1, "seed": 5}}],
- "joints": [{"body": 0, "rows": 0, "seed": 6, "damping": {"kind": "rows", "low": -2, "high": -2, "seed": 5}}]
+/// A fork of three joints, closed at its ends, with friction on the first.
+std::string spec() {
+  generators::Spec s;
+  s.family = "fuzz";
+  s.bodies.resize(3);
+  s.bodies[1].parent = s.bodies[2].parent = 0;
+  s.bodies[1].joint = generators::JointKind::spherical;
+  s.bodies[1].dof = 3;
+  s.bodies[2].armature_decade = -2;
+  s.links.resize(1);
+  s.links[0].bodies = {1, 2};
+  s.joints.resize(1);
+  s.joints[0].damping.kind = generators::DampingKind::zero;
+  return generators::to_json(s);
 }
-)";
 
 const char* const mjcf = R"(<mujoco model="m">
   <compiler angle="radian"/>
@@ -112,7 +117,7 @@ const char* const sdf = R"(<?xml version="1.0"?>
 }  // namespace
 
 std::vector<FuzzText> fuzz_texts() {
-  return {{"urdf", arm}, {"urdf", gear}, {"yaml", scene}, {"json", spec}, {"xml", mjcf}, {"sdf", sdf}};
+  return {{"urdf", arm}, {"urdf", gear}, {"yaml", scene}, {"json", spec()}, {"xml", mjcf}, {"sdf", sdf}};
 }
 
 }  // namespace delassus
