@@ -2,7 +2,9 @@
 // passes, in Quad.
 #include "algorithms/regularity.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
@@ -132,9 +134,29 @@ std::string described(const Own& own, const Body& body) {
                    "principal moments of 0 or more, or " + accepted);
 }
 
+/// What a number of M can come to: Σ m ℓ² + |I| over all bodies, ℓ the length of the path to the centre of mass.
+void check_range(const Model& model, const std::string& file) {
+  constexpr long double most = 1e300L;
+  std::vector<long double> reach;
+  long double sum = 0;
+  for (const Body& body : model.bodies) {
+    const auto norm = [](const Vector3<double>& x) { return std::hypot(static_cast<long double>(x[0]), static_cast<long double>(x[1]), static_cast<long double>(x[2])); };
+    const bool root = body.parent == ground;  // the place of a tree in the world does not enter M
+    reach.push_back(root ? 0 : reach[static_cast<std::size_t>(body.parent)] + norm(body.joint.placement.translation));
+    const long double arm = reach.back() + norm(body.com);
+    sum += static_cast<long double>(body.mass) * arm * arm + static_cast<long double>(body.inertia.cwiseAbs().maxCoeff());
+    if (sum > most || reach.back() > most)
+      throw ModelError(file, body.name,
+                       "mass " + text(body.mass) + " kg at " + text(static_cast<double>(std::min(arm, most))) + " m, largest moment " +
+                           text(body.inertia.cwiseAbs().maxCoeff()) + " kg m^2: M leaves the range of double",
+                       "m l^2 and moments below 1e300 kg m^2; check the units of mass, inertia and origins");
+  }
+}
+
 }  // namespace
 
 void check_regular(const Model& model, const std::string& file) {
+  check_range(model, file);
   std::vector<bool> tip(model.bodies.size(), true);
   for (const Body& body : model.bodies)
     if (body.parent != ground) tip[static_cast<std::size_t>(body.parent)] = false;

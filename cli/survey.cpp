@@ -96,7 +96,7 @@ struct Totals {
     fixed_only += j.contains("free_base");
     const bool moving = j.contains("moving") ? j["moving"].get<int>() > 0 : loaded && j["dof"].get<int>() > 6;
     articulated += moving;
-    if (moving && j.contains("regular") && j["urdfdom"].is_null() && (j["regular"]["free"].get<bool>() || j["regular"]["fixed"].get<bool>()))
+    if (moving && j.contains("regular") && !j["urdfdom"].is_string() && (j["regular"]["free"].get<bool>() || j["regular"]["fixed"].get<bool>()))
       ++readable, readable_load += loaded;
     if (!loaded) return;
     std::map<std::string, int> here;
@@ -159,9 +159,10 @@ void print_rows(const json& all, bool every) {
   group("differs from the independent reading, or failed", [](const json& j) { return j.contains("differs"); });
 }
 
-void print_totals(const Totals& t) {
-  std::printf("\nlargest ratios (below %g passes):", laws::pass_below);
-  for (const auto& [name, r] : t.worst) std::printf("  %s %s", name.c_str(), bench::ratio_text(r).c_str());
+void print_totals(const Totals& t, bool compared) {
+  if (compared) std::printf("\nlargest ratios (below %g passes):", laws::pass_below);
+  for (const auto& [name, r] : t.worst)
+    if (compared) std::printf("  %s %s", name.c_str(), bench::ratio_text(r).c_str());
   std::printf("\n%d files, %d with moving joints: %d load, %d load with warnings, %d refused (%d rightly, %d need a look), %d failed, %d differ\n", t.files,
               t.articulated, t.loads, t.warned, t.refused, t.right, t.look, t.failed, t.differ);
   if (t.fixed_only > 0) std::printf("%d load on a fixed base only\n", t.fixed_only);
@@ -183,13 +184,14 @@ int survey(const Options& o) {
     totals.add(j);
     all.push_back(std::move(j));
   }
-  std::fprintf(stderr, stopped ? "\nstopped: what follows is about the first %zu files\n" : "\n", all.size());
+  std::fprintf(stderr, "\n");
+  if (stopped) std::fprintf(stderr, "stopped: what follows is about the first %zu files\n", all.size());
   if (o.as_json) std::printf("%s\n", json({{"files", all}, {"totals", totals_json(totals)}, {"stopped", stopped.load()}}).dump(1, ' ', false, json::error_handler_t::replace).c_str());
   else {
     print_rows(all, o.all);
     print_kinds("warnings by kind", totals.warnings);
     print_kinds("refusals by kind", totals.refusals);
-    print_totals(totals);
+    print_totals(totals, o.file.poses > 0);
   }
   return totals.differ > 0 ? law_broken : good;
 }

@@ -227,7 +227,8 @@ void loaded_json(Loaded& loaded, UrdfWitness* witness, const SurveyOptions& o, j
 
 /// Why a refusal is right without a look at the message, or null.
 json right(const json& j) {
-  if (j.contains("urdfdom") && !j["urdfdom"].is_null()) return "urdfdom does not read it";
+  if (j.contains("urdfdom") && j["urdfdom"].is_string()) return "urdfdom does not read it";
+  if (j.contains("urdfdom") && j["urdfdom"].is_object()) return "urdfdom drops a part of it: " + j["urdfdom"]["dropped"].get<std::string>().substr(0, 80);
   if (j.contains("regular") && !j["regular"]["free"].get<bool>() && !j["regular"]["fixed"].get<bool>()) return "M is singular or indefinite";
   return nullptr;
 }
@@ -239,7 +240,7 @@ json urdfdom_says(const std::string& file) {
   if (text.find('<') == std::string::npos) return "no XML";
   Said listener;
   try {
-    if (urdf::parseURDF(text)) return nullptr;
+    if (urdf::parseURDF(text)) return listener.said.empty() ? json(nullptr) : json{{"dropped", listener.said}};
   } catch (const std::exception& e) {
     return std::string(e.what());
   }

@@ -15,7 +15,8 @@ struct SurveyOptions {
 /// Whether the text is a robot that can be surveyed: a .urdf, or .xml and .sdf whose root element says so.
 [[nodiscard]] bool is_robot_file(const std::string& file);
 
-/// What urdfdom says when it refuses the file by itself; null when it reads it.
+/// What urdfdom says when it refuses the file by itself; {dropped: what it says} when it reads it all the same; null when it
+/// reads it without an error.
 [[nodiscard]] json urdfdom_says(const std::string& file);
 
 /// {file, state, …}, state one of

@@ -84,7 +84,10 @@ CheckedUrdf check_urdf(const std::string& file, Findings& findings) {
   XMLElement& robot = load_xml(document, file);
   if (std::string_view(robot.Name()) != "robot")
     throw ModelError(file, "root element", in_quotes(robot.Name()) + " is no robot", "<robot name=\"...\">");
-  (void)name_of(Place{file, ""}, robot);
+  if (robot.Attribute("name") == nullptr || *robot.Attribute("name") == '\0') {  // urdfdom insists; nothing depends on it
+    findings.note(file + ": <robot> has no name");
+    robot.SetAttribute("name", "robot");
+  }
   leave_out(file, robot, findings);
   const bool xacro = std::any_of(findings.warnings.begin(), findings.warnings.end(), [](const Warning& w) { return w.kind == "unexpanded xacro"; });
   CheckedUrdf out;

@@ -1,5 +1,8 @@
 #include "models/urdf_xml.h"
 
+#include <fstream>
+#include <iterator>
+
 #include "models/message.h"
 #include "models/robot.h"
 
@@ -77,7 +80,21 @@ std::string name_of(const Place& place, const XMLElement& e, const char* attribu
   return text;
 }
 
+namespace {
+
+/// tinyxml2 takes a NUL byte for the end of the text.
+void check_no_nul(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t at = bytes.find('\0');
+  if (at != std::string::npos)
+    throw ModelError(file, "byte " + std::to_string(at), "is NUL, which no XML has: what follows would be lost", "text; a UTF-16 file must be converted to UTF-8");
+}
+
+}  // namespace
+
 XMLElement& load_xml(tinyxml2::XMLDocument& document, const std::string& file) {
+  check_no_nul(file);
   const tinyxml2::XMLError error = document.LoadFile(file.c_str());
   if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
       error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
@@ -87,6 +104,9 @@ XMLElement& load_xml(tinyxml2::XMLDocument& document, const std::string& file) {
                      "well-formed XML");
   XMLElement* root = document.RootElement();
   if (root == nullptr) throw ModelError(file, "root element", "the XML holds no element", "<robot name=\"...\">, as in URDF");
+  if (const XMLElement* second = root->NextSiblingElement())
+    throw ModelError(file, "<" + std::string(second->Name()) + "> (line " + std::to_string(second->GetLineNum()) + ")",
+                     "is a second root element behind <" + std::string(root->Name()) + ">", "one root element; remove the other or put it into a file of its own");
   return *root;
 }
 

@@ -59,10 +59,11 @@ struct UrdfWitness {
 [[nodiscard]] UrdfWitness parse_urdf_witness(const std::string& text);
 [[nodiscard]] UrdfWitness read_urdf_witness(const std::string& file);
 
-/// What a model of the file must say at q, and the bounds of the verdict. A rotation carries an error relative to 1, a
-/// position one relative to ℓ, the length of the path to it from the tree's reference point, hence for freedoms k, l
-///   M: Σ_i m_i v_ik v_il + |I_i| w_ik w_il + armature,  v_ik = ℓ_i + ℓ_k and w_ik = 1 (turning) or v = 1, w = 0 (sliding)
-///   J: 1 for angular rows, ℓ_i + ℓ_k or 1 for linear ones
+/// What a model of the file must say at q, and the bounds of the verdict. A rotation carries an error relative to s, the
+/// number of rotations it is the product of (joints from the tree's root on), a position one relative to s ℓ, ℓ the length
+/// of the path to it from the tree's reference point, hence for freedoms k, l
+///   M: Σ_i s_i (m_i v_ik v_il + |I_i| w_ik w_il) + armature,  v_ik = ℓ_i + ℓ_k, w_ik = 1 (turning) or v = 1, w = 0 (sliding)
+///   J: s_i for angular rows, s_i (ℓ_i + ℓ_k) or s_i for linear ones
 ///   A: G|X| + |X|ᵀJ_bᵀ + ε G|M⁻¹|Gᵀ,  X = M⁻¹Jᵀ,  G = J_b + |X|ᵀ M_b (to second order: entries that cancel are no zeros)
 /// Zero bounds (a freedom that does not move the link) demand zeros.
 struct UrdfMatrices {

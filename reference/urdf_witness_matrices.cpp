@@ -87,6 +87,7 @@ struct Freedom {
 struct Placed {
   Transform X;
   Quad reach;                     ///< ℓ of the origin
+  Quad steps = Quad(1);           ///< s: factors of the product of rotations that X.R is
   std::vector<Index> freedoms;    ///< that move it
 };
 
@@ -225,6 +226,7 @@ void Mechanism::move(Index link, Placed& at, const VectorX<double>& q) {
   const bool root_body = at.freedoms.empty();
   at.X = at.X * motion;
   at.reach = root_body ? centre_of_root_body(link) : at.reach + length(travel);
+  if (root_body) at.steps = Quad(1);
   for (Index k = 0; k < n; ++k) {
     Freedom& f = freedom_[static_cast<std::size_t>(m.dof + k)];
     f.o = at.X.p, f.reach = at.reach;
@@ -247,6 +249,7 @@ void Mechanism::place(const VectorX<double>& q) {
       at = at_[static_cast<std::size_t>(w_.joints[static_cast<std::size_t>(joint)].parent)];
       at.X = at.X * mover(i).placement;
       at.reach += length(mover(i).placement.p);
+      at.steps += Quad(1);
     }
     if (kind(i) != Kind::fixed) move(i, at, q);
   }
@@ -273,7 +276,7 @@ void Mechanism::mass_matrix(MatrixX<Quad>& M, MatrixX<Quad>& bound) const {
         const Freedom& fb = freedom_[static_cast<std::size_t>(b)];
         const Real3 vb = fb.v + fb.w.cross(Real3(X.p - fb.o));
         M(a, b) += mass * va.dot(vb) + Ia.dot(fb.w);
-        bound(a, b) += abs(mass) * ba * (fb.turns ? reach + fb.reach : Quad(1)) + (fa.turns && fb.turns ? size : Quad(0));
+        bound(a, b) += at_[i].steps * (abs(mass) * ba * (fb.turns ? reach + fb.reach : Quad(1)) + (fa.turns && fb.turns ? size : Quad(0)));
       }
     }
   }
@@ -289,7 +292,7 @@ void Mechanism::weld(Index i, Index r, MatrixX<Quad>& J, MatrixX<Quad>& bound) c
     const Real3 linear = at.X.R.transpose() * Real3(f.v + f.w.cross(Real3(at.X.p - f.o)));
     for (Index k = 0; k < 3; ++k) {
       J(r + k, a) = angular[k], J(r + 3 + k, a) = linear[k];
-      bound(r + k, a) = Quad(f.turns ? 1 : 0), bound(r + 3 + k, a) = f.turns ? at.reach + f.reach : Quad(1);
+      bound(r + k, a) = f.turns ? at.steps : Quad(0), bound(r + 3 + k, a) = at.steps * (f.turns ? at.reach + f.reach : Quad(1));
     }
   }
 }
@@ -298,7 +301,7 @@ void Mechanism::mimic(Index link, Index master, double multiplier, Index r, Matr
   for (const auto& [i, coefficient] : {std::pair<Index, double>{link, 1}, {master, -multiplier}}) {
     const Placed& at = at_[static_cast<std::size_t>(i)];
     for (const Index a : at.freedoms)
-      bound(r, a) += Quad(std::fabs(coefficient)) * (Quad(1) + at.reach + freedom_[static_cast<std::size_t>(a)].reach);
+      bound(r, a) += at.steps * Quad(std::fabs(coefficient)) * (Quad(1) + at.reach + freedom_[static_cast<std::size_t>(a)].reach);
     J(r, dof(i)) += Quad(coefficient);
   }
 }
