@@ -186,6 +186,7 @@ void SceneLoader::read_box(const Yaml& y) {
   const Vector3<double> size = y.at("size").vector3(" > 0 [m]");
   if (!(size.minCoeff() > 0)) y.at("size").fail("an edge is not positive", "3 full edge lengths > 0 [m]");
   Body body = box_body(mass, size);
+  if (!body.inertia.allFinite()) y.at("size").fail("gives moments of inertia beyond the range of double with the mass", "mass and size with m l^2 below 1e308 kg m^2");
   body.name = name;
   body.joint.name = name + "/base";
   if (y.has("friction")) body.shapes[0].friction = y.at("friction").non_negative("");

@@ -79,6 +79,7 @@ std::string differs(const std::string& file, Model& model, const Robot& robot, b
     if (!w.doubtful.empty() && !noted) return "nothing is said of " + w.doubtful.front();
     if (!fixed && std::fabs(mass_of(model) - w.total_mass()) > 30 * unit_roundoff<double> * static_cast<double>(w.links.size()) * w.total_mass() && !warned)
       return std::to_string(mass_of(model)) + " kg in the model, " + std::to_string(w.total_mass()) + " kg in the text";
+    if (largest(w) > 1e12) return {};  // the witness computes from the world's origin
     const std::vector<Index> leaves = w.leaves();
     for (const Index i : leaves) {
       Constraint c;
