@@ -214,7 +214,7 @@ void loaded_json(Loaded& loaded, UrdfWitness* witness, const SurveyOptions& o, j
       for (auto& joint : witness->joints)
         if (joint.armature == 0 && o.armature >= 0) joint.armature = o.armature;
       const double theirs = moved_mass(*witness, !loaded.robot.root_joint.empty());
-      if (std::fabs(mass - theirs) >= laws::pass_below * unit_roundoff<double> * theirs * static_cast<double>(witness->links.size()))
+      if (std::fabs(mass - theirs) > laws::pass_below * unit_roundoff<double> * theirs * static_cast<double>(witness->links.size()))
         throw std::runtime_error(json(mass).dump() + " kg in the model, " + json(theirs).dump() + " kg in the file");
     }
     compare(loaded, witness, o, r);
