@@ -79,7 +79,7 @@ TEST(BadUrdf, every_fault_is_named) {
       {"no XML", "hello", {"XML"}},
       {"broken XML", "<robot name=\"r\"><link name=\"a\">", {"broken XML"}},
       {"another root", "<sdf/>", {"\"sdf\""}},
-      {"no name", "<robot/>", {"name"}},
+      {"no link", "<robot/>", {"has no link"}},
       {"empty robot", robot(""), {"no link"}},
       {"only xacro", robot("<xacro:include filename=\"x\"/>"), {"no link", "run xacro first"}},
       {"a number of xacro", robot(link("a", inertial("${m}"))), {"\"${m}\" is not expanded", "run xacro first"}},
