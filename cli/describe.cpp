@@ -63,6 +63,19 @@ json constraints_json(const Model& model) {
   return out;
 }
 
+/// Per loop what is left open, per joint how far it was moved.
+json assembly_json(const Scene& scene) {
+  const Assembly& a = scene.assembly;
+  json out = {{"residual", a.residual}, {"residual_before", a.residual_before}, {"steps", a.steps}, {"gaps", json::array()}, {"moves", json::array()}, {"beyond_limits", json::array()}};
+  const auto joint = [&](Index i) { return scene.model.bodies[static_cast<std::size_t>(i)].joint.name; };
+  for (const Gap& g : a.gaps)
+    out["gaps"].push_back({{"name", scene.model.constraints[static_cast<std::size_t>(g.constraint)].name}, {"before", g.before}, {"after", g.after},
+                           {"rounding", g.rounding}, {"accepted", g.accepted}, {"unit", g.angle ? "rad" : "m"}});
+  for (const Move& m : a.moves) out["moves"].push_back({{"joint", joint(m.body)}, {"turned", m.turned}, {"shifted", m.shifted}});
+  for (const Beyond& b : a.beyond) out["beyond_limits"].push_back({{"joint", joint(b.body)}, {"dof", b.dof}, {"value", b.value}, {"limit", b.limit}});
+  return out;
+}
+
 json describe_json(const Scene& scene) {
   const auto structure = structure_of(scene.model);
   const bench::SceneResult facts = bench::facts_of(scene, false);
@@ -75,8 +88,7 @@ json describe_json(const Scene& scene) {
             {"operators", operators_json(structure)}};
   j["loops"] = {{"any", scene.has_loops}};
   if (scene.has_loops)
-    j["loops"].update({{"residual", scene.assembly.residual}, {"residual_before", scene.assembly.residual_before},
-                       {"steps", scene.assembly.steps}});
+    j["loops"].update(assembly_json(scene));
   return j;
 }
 
@@ -89,6 +101,18 @@ std::string some(const json& list, std::size_t most) {
 
 void print_line(const char* key, const std::string& value) { std::printf("%-18s %s\n", key, value.c_str()); }
 
+void print_moves(const json& moves) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(moves.size(), 8); ++i) {
+    const double turned = moves[i]["turned"], shifted = moves[i]["shifted"];
+    text += (i ? ", " : "") + moves[i]["joint"].get<std::string>() + " by";
+    if (turned > 0) text += bench::format(" %.3g rad", turned);
+    if (shifted > 0) text += bench::format(" %.3g m", shifted);
+  }
+  if (moves.size() > 8) text += bench::format(", … (%zu in all; --json lists them)", moves.size());
+  if (!text.empty()) print_line("  moved", text);
+}
+
 void print_text(const json& j, bool joints_too) {
   print_line("scene", j["scene"]);
   print_line("bodies", j["bodies"].dump() + " in " + j["trees"].dump() + " tree(s)");
@@ -96,10 +120,12 @@ void print_text(const json& j, bool joints_too) {
   print_robots(j["robots"], joints_too);
   print_line("rows", j["rows"].dump() + ": " + j["summary"].get<std::string>());
   print_line("damping [1/kg]", j["damping"].is_array() ? "per row (--json lists it)" : j["damping"].dump());
-  if (j["loops"]["any"].get<bool>())
+  if (j["loops"]["any"].get<bool>()) {
     print_line("loops", bench::format("largest closure error %.2e after %d steps of assembly, %.2e before [m or rad]",
                                       j["loops"]["residual"].get<double>(), j["loops"]["steps"].get<int>(),
                                       j["loops"]["residual_before"].get<double>()));
+    print_moves(j["loops"]["moves"]);
+  }
   for (const char* matrix : {"M", "M_R"}) {
     const json& plan = j["elimination"][matrix];
     print_line(matrix == std::string("M") ? "elimination of M" : "of M + Jᵀ R J",
