@@ -1,6 +1,7 @@
 #include "algorithms/constraints.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "algorithms/regularity.h"
@@ -209,8 +210,11 @@ void validate_constraint(const Model& model, const Constraint& c, const std::str
                        "0 to " + std::to_string(n - 1));
     if (c.side != 1 && c.side != -1) throw ModelError(file, element, "side " + std::to_string(c.side), "1 (lower) or -1 (upper)");
   }
-  if (c.kind == Kind::distance && (!(c.length > 0) || std::isinf(c.length)))
-    throw ModelError(file, element + " length", std::to_string(c.length) + " m", "finite and above 0 m");
+  if (c.kind == Kind::distance && (!(c.length > 0) || std::isinf(c.length))) {
+    char digits[32];
+    const char* end = std::to_chars(digits, digits + sizeof digits, c.length).ptr;
+    throw ModelError(file, element + " length", std::string(static_cast<const char*>(digits), end) + " m", "finite and above 0 m");
+  }
   if (!std::isfinite(c.friction))
     throw ModelError(file, element + " friction", "not finite", "a finite number, negative: not given");
   if (c.loop && !has_closure(c.kind))

@@ -186,9 +186,24 @@ std::string to_json(const Spec& spec) {
   return j.dump(1);
 }
 
+namespace {
+
+/// Where the text stops being JSON; numbers beyond double are such a place.
+[[noreturn]] void not_json(const std::string& text, const std::string& file) {
+  std::string why = "is not JSON";
+  try {
+    const json parsed = json::parse(text);
+  } catch (const json::exception& e) {
+    why += std::string(": ") + e.what();
+  }
+  throw ModelError(file, "document", why, "one JSON object, numbers in the range of double");
+}
+
+}  // namespace
+
 Spec from_json(const std::string& text, const std::string& file) {
   const json j = json::parse(text, nullptr, false);
-  if (j.is_discarded()) throw ModelError(file, "document", "is not JSON", "one JSON object");
+  if (j.is_discarded()) not_json(text, file);
   const Reader r(j, file, "spec");
   Spec spec;
   spec.family = r.get<std::string>("family", "a name");

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -20,7 +21,9 @@ Kind kind_of(const Yaml& y) {
   const std::string text = y.text(accepted);
   for (const Kind k : kinds)
     if (text == name(k)) return k;
-  y.fail(in_quotes(text) + " is no kind of constraint", accepted);
+  std::vector<std::string_view> names;
+  for (const Kind k : kinds) names.push_back(name(k));
+  y.fail(in_quotes(text) + " is no kind of constraint", did_you_mean(text, names) + accepted);
 }
 
 /// The rotation with the given z and/or x directions; x is made orthogonal to z.
@@ -60,7 +63,11 @@ SceneLoader::End SceneLoader::end_of(const Yaml& y) const {
   const std::string text = y.text("robot/link, a box, world");
   if (text == "world" || text == "ground") return {{}, text};
   const auto it = scene_.frames.find(text);
-  if (it == scene_.frames.end()) y.fail(in_quotes(text) + " does not exist", "robot/link, a box, world");
+  if (it == scene_.frames.end()) {
+    std::vector<std::string_view> names;
+    for (const auto& [frame, place] : scene_.frames) names.push_back(frame);
+    y.fail(in_quotes(text) + " does not exist", did_you_mean(text, names) + "robot/link, a box, world");
+  }
   return {it->second, text};
 }
 
@@ -81,7 +88,10 @@ Index SceneLoader::joint_of(const Yaml& y) const {
     const auto it = r.joints.find(text.substr(r.name.size() + 1));
     if (it != r.joints.end()) return it->second;
   }
-  y.fail("joint " + in_quotes(text) + " does not exist or is fixed", "robot/joint of a moving joint");
+  std::vector<std::string> names;
+  for (const Robot& r : robots_)
+    for (const auto& [joint, body] : r.joints) names.push_back(r.name + "/" + joint);
+  y.fail("joint " + in_quotes(text) + " does not exist or is fixed", did_you_mean(text, names) + "robot/joint of a moving joint");
 }
 
 void SceneLoader::add(const Yaml& y, Constraint c) {

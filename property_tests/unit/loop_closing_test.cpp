@@ -255,6 +255,11 @@ TEST(Assembly, limits_are_kept_or_their_violation_is_told) {
   expect_closed_form(s);
   EXPECT_TRUE(s.warnings.empty());
   EXPECT_TRUE(s.assembly.beyond.empty());
+  JointText mirrored;  // the same from the other side
+  mirrored.axis = "0 1 0", mirrored.limits = "lower=\"-2\" upper=\"" + text(-free - 0.01) + "\"";
+  const Scene m = scene_of(four_bar("mirrored.urdf", mirrored), "j1: 1.0, j2: 0.5, j3: 1.7", point_loop);
+  EXPECT_LE(m.q[1], -free - 0.01);
+  EXPECT_LT(ratio(m.q[1] + s.q[1], 10), 30);
   const Scene beyond = scene_of(limited, pose, point_loop, "hold: [r/j1]\n");  // the other pose at this crank has j2 = −2.0
   expect_closed_form(beyond);
   ASSERT_EQ(beyond.assembly.beyond.size(), 1u);
@@ -308,6 +313,10 @@ TEST(JointLimits, are_rows_of_their_side) {
   expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/j3, side: left}\n"); }, {":4", "left", "lower, upper"});
   expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/j3, dof: 1}\n"); }, {":4", "1 degree"});
   expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/none}\n"); }, {":4", "r/none"});
+  expect_refused([&] { (void)rows("  - {kind: joint_limt, joint: r/j3}\n"); }, {":4", "joint_limt", "did you mean joint_limit?"});
+  expect_refused([&] { (void)rows("  - {kind: joint_lock, joint: r/3j}\n"); }, {":4", "did you mean r/j3?"});
+  expect_refused([&] { (void)rows("  - {kind: point, of: r/cupler, to: world}\n"); }, {":4", "did you mean r/coupler?"});
+  EXPECT_EQ(refusal([&] { (void)rows("  - {kind: point, of: gripper, to: world}\n"); }).find("did you mean"), std::string::npos);
   JointText endless;
   endless.type = "continuous", endless.limits = "";
   const std::string free = four_bar("limit_free.urdf", endless);
