@@ -1,4 +1,6 @@
 // Loops of a scene closed: what is held, what is accepted, and what is told of the outcome.
+#include <algorithm>
+#include <charconv>
 #include <set>
 
 #include "models/message.h"
@@ -9,12 +11,7 @@ namespace {
 
 using Kind = Constraint::Kind;
 
-std::string number(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
-/// Two digits of a size.
+/// Three digits of a size.
 std::string rough(double x) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 3).ptr};
@@ -90,18 +87,22 @@ void SceneLoader::close_loops_of_scene() {
 void SceneLoader::tell_assembly() {
   const Model& model = scene_.model;
   const auto name_of = [&](Index i) { return model.bodies[static_cast<std::size_t>(i)].joint.name; };
-  Findings found(strict_);
+  const auto warn_at = [&](Index constraint, const std::string& problem, const std::string& advice) {
+    if (const auto it = constraint_at_.find(static_cast<std::size_t>(constraint)); it != constraint_at_.end())
+      return warn("loop left open", it->second, problem, advice);
+    Findings found(strict_);
+    found.warn("loop left open", path_, "loop of a robot's file", problem, advice);
+    scene_.warnings.push_back(found.warnings.front());
+  };
   for (const Gap& g : scene_.assembly.gaps) {
     if (g.after <= g.rounding) continue;
     const char* unit = g.angle ? " rad" : " m";
-    found.warn("loop left open", path_, model.constraints[static_cast<std::size_t>(g.constraint)].name,
-               "open by " + number(g.after) + unit + ", more than rounding (" + rough(g.rounding) + unit + ")",
-               "accepted up to " + rough(g.accepted) + unit + "; dimensions with more digits close it, tolerance says what is accepted");
+    warn_at(g.constraint, model.constraints[static_cast<std::size_t>(g.constraint)].name + " is open by " + number_text(g.after) + unit + ", more than rounding (" + rough(g.rounding) + unit + ")",
+            "accepted up to " + rough(g.accepted) + unit + "; dimensions with more digits close it, tolerance says what is accepted");
   }
   for (const Beyond& b : scene_.assembly.beyond)
-    found.warn("limit broken by assembly", path_, "joint " + name_of(b.body),
-               "assembled at " + number(b.value) + ", beyond its limit " + number(b.limit) + "; no closed pose within the limits was found",
-               "give joint values nearer to a closed pose, or hold the joints that are right");
+    warn("limit broken by assembly", root_, "joint " + name_of(b.body) + " is assembled at " + number_text(b.value) + ", beyond its limit " + number_text(b.limit) + "; no closed pose within the limits was found",
+         "give joint values nearer to a closed pose, or hold the joints that are right");
   for (const Constraint& c : model.constraints) {
     if (c.kind != Kind::coupling) continue;
     const auto turns = [&](const Constraint::Term& t) {
@@ -111,7 +112,6 @@ void SceneLoader::tell_assembly() {
     if (std::any_of(c.terms.begin(), c.terms.end(), turns))
       scene_.notes.push_back(c.name + ": terms on spherical or floating joints have no position; assembly does not keep them");
   }
-  scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());
   note_moves();
 }
 

@@ -4,15 +4,6 @@
 #include "models/scene_loader.h"
 
 namespace delassus {
-namespace {
-
-std::string number(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
-}  // namespace
-
 /// {of, at, to, normal, friction}: the point is given in the link's frame, the normal in world axes.
 void SceneLoader::read_contact(const Yaml& y, double friction) {
   y.keys({"name", "of", "at", "to", "normal", "friction", "damping"});
@@ -87,7 +78,7 @@ void SceneLoader::damp(const Yaml& y, Index row, Index rows) {
   if (R != R.transpose()) y.fail("the block is not symmetric", "a symmetric positive semidefinite block" + unit);
   const double least = Eigen::SelfAdjointEigenSolver<MatrixX<double>>(R, Eigen::EigenvaluesOnly).eigenvalues()[0];
   if (least < -30 * std::numeric_limits<double>::epsilon() * static_cast<double>(rows) * R.norm())
-    y.fail("the block has the eigenvalue " + number(least), "a symmetric positive semidefinite block" + unit);
+    y.fail("the block has the eigenvalue " + number_text(least), "a symmetric positive semidefinite block" + unit);
   for (Index k = 0; k < rows; ++k) entry(k) = 0;
   scene_.damping.blocks.push_back({row, R});
 }

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
@@ -57,7 +58,7 @@ Scene open_scene(const std::string& name, const SceneOptions& options) {
   if (!name.empty() && !folder.empty() && fs::is_regular_file(stem, error)) return load_scene(stem.string(), options);
   std::string known = "a .yaml file, a robot's file, swimmer:N";
   for (const std::string& s : scene_names()) known += ", " + s;
-  throw ModelError("scene", in_quotes(name), "does not exist", known);
+  throw ModelError("scene", in_quotes(name), "does not exist", did_you_mean(name, scene_names()) + known);
 }
 
 }  // namespace delassus

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -101,7 +102,11 @@ void SceneLoader::set_pose(Index body, const Pose<double>& pose) {
 void SceneLoader::set_joints(const Robot& robot, const Yaml& joints) {
   for (const auto& [joint, value] : joints.entries()) {
     const auto it = robot.joints.find(joint);
-    if (it == robot.joints.end()) value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", "a joint of the URDF that is not fixed");
+    if (it == robot.joints.end()) {
+      std::vector<std::string_view> names;
+      for (const auto& [own, body] : robot.joints) names.push_back(own);
+      value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", did_you_mean(joint, names) + "a joint of its file that is not fixed");
+    }
     for (const Robot::Mimic& m : robot.mimics)
       if (m.body == it->second) value.fail("the joint follows another one", "no value for a mimic joint");
     const Index k = scene_.model.first_q[z(it->second)], n = q_size(scene_.model.bodies[z(it->second)].joint.type);

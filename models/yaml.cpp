@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/robot.h"
 
@@ -59,7 +60,7 @@ void Yaml::keys(std::initializer_list<const char*> accepted) const {
   for (const auto& [name, value] : entries()) {
     bool known = false;
     for (const char* k : accepted) known = known || name == k;
-    if (!known) value.fail("unknown key", all);
+    if (!known) value.fail("unknown key", did_you_mean(name, accepted) + all);
   }
 }
 

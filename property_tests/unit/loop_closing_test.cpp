@@ -188,6 +188,7 @@ TEST(Assembly, a_linkage_planar_but_for_its_decimals_stays_where_it_is) {
   const Scene s = scene_of(four_bar("tilted.urdf", tilt2, tilt3), "j1: 1.000000, j2: -0.565246, j3: 1.759125", hinge_loop);
   EXPECT_TRUE(has_warning(s, "loop left open"));
   EXPECT_EQ(s.warnings.size(), 1u);
+  EXPECT_NE(s.warnings[0].text.find("loop_closing.yaml:4: constraints[0]: hinge r/coupler - r/rocker is open by "), std::string::npos) << s.warnings[0].text;
   EXPECT_GT(s.assembly.residual, 1e-6);
   EXPECT_LT(s.assembly.residual, 2e-5);
   EXPECT_LT(std::fabs(s.q[0] - 1), 1e-4);
@@ -238,6 +239,7 @@ TEST(Assembly, tolerances_at_half_and_twice_the_limit) {
   const double rounding = 30 * 0x1p-53 * 3;
   EXPECT_FALSE(has_warning(gap(rounding / 2, ", tolerance: 0"), "loop left open"));
   EXPECT_TRUE(has_warning(gap(2 * rounding), "loop left open"));
+  expect_refused([&] { (void)gap(2 * rounding, "", "strict: true\n"); }, {":4", "is open by 1.9", "strict"});
   expect_refused([&] { (void)gap(2 * rounding, ", tolerance: 0"); }, {"open by 1.9", "at most 9.9"});
 }
 
@@ -316,6 +318,9 @@ TEST(JointLimits, are_rows_of_their_side) {
   expect_refused([&] { (void)rows("  - {kind: joint_limt, joint: r/j3}\n"); }, {":4", "joint_limt", "did you mean joint_limit?"});
   expect_refused([&] { (void)rows("  - {kind: joint_lock, joint: r/3j}\n"); }, {":4", "did you mean r/j3?"});
   expect_refused([&] { (void)rows("  - {kind: point, of: r/cupler, to: world}\n"); }, {":4", "did you mean r/coupler?"});
+  expect_refused([&] { (void)scene_of(urdf, "j11: 0.5", "  - {kind: joint_limit, robot: r}\n"); }, {":2", "did you mean j1?"});
+  expect_refused([&] { (void)scene_of(urdf, "j1: 0.5", "  - {kind: joint_limit, robt: r}\n"); }, {":4", "did you mean robot?"});
+  expect_refused([&] { (void)open_scene("casie"); }, {"did you mean cassie?"});
   EXPECT_EQ(refusal([&] { (void)rows("  - {kind: point, of: gripper, to: world}\n"); }).find("did you mean"), std::string::npos);
   JointText endless;
   endless.type = "continuous", endless.limits = "";
