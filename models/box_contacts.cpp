@@ -86,7 +86,7 @@ void keep_four(std::vector<ShapeContact>& points, const Face& f) {
   if (points.size() <= 4) return;
   std::vector<ShapeContact> kept;
   for (const auto& [s, t] : std::array<std::pair<double, double>, 4>{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}}) {
-    const V3 d = s * f.u / f.half_u + t * f.v / f.half_v;
+    const V3 d = (f.half_u > 0 ? s / f.half_u : 0) * f.u + (f.half_v > 0 ? t / f.half_v : 0) * f.v;
     const auto it = std::max_element(points.begin(), points.end(), [&](const auto& x, const auto& y) { return d.dot(x.point) < d.dot(y.point); });
     kept.push_back(*it);
     points.erase(it);

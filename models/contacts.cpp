@@ -69,6 +69,56 @@ std::vector<V3> low_points(const Placed& p, double margin) {
   return out;
 }
 
+/// Of points that fall on one point of the plane (shapes of zero size, vertices above each other) the deepest stays.
+void drop_repeated(std::vector<ContactPoint>& found) {
+  std::vector<ContactPoint> out;
+  for (const ContactPoint& c : found) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const ContactPoint& o) { return o.point == c.point; });
+    if (same == out.end()) out.push_back(c);
+    else if (c.gap < same->gap) *same = c;
+  }
+  found = std::move(out);
+}
+
+/// The first candidate that no later one beats by a clear lead; of those that reach as far, the deepest.
+std::size_t best_of(const std::vector<ContactPoint>& found, double lead, const std::vector<double>& reach) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    const double d = reach[i] - reach[best];
+    if (d > lead || (d >= -lead && found[i].gap < found[best].gap - lead)) best = i;
+  }
+  return best;
+}
+
+/// The deepest point, the farthest from it on the plane, the farthest from the line through both, the farthest outside the
+/// triangle of the three. Ties, up to a millionth of the extent, go to the deeper one, then to the first; what reaches no
+/// farther than that is left out. Order as found.
+void keep_farthest(std::vector<ContactPoint>& found) {
+  double extent = 0;
+  for (const ContactPoint& c : found) extent = std::max(extent, (c.point - found[0].point).norm());
+  const double lead = 1e-6 * extent;
+  std::vector<std::size_t> kept;
+  auto at = [&](std::size_t k) -> const V3& { return found[kept[k]].point; };
+  auto take = [&](auto&& reach_of) {
+    std::vector<double> reach;
+    for (const ContactPoint& c : found) reach.push_back(reach_of(c.point));
+    const std::size_t i = best_of(found, lead, reach);
+    if (reach[i] > lead || kept.empty()) kept.push_back(i);
+  };
+  auto left_of = [&](const V3& a, const V3& b, const V3& x) { return V3(a[1] - b[1], b[0] - a[0], 0).normalized().dot(x - a); };
+  take([](const V3&) { return 0.0; });
+  take([&](const V3& x) { return (x - at(0)).norm(); });
+  if (kept.size() == 2) take([&](const V3& x) { return std::abs(left_of(at(0), at(1), x)); });
+  if (kept.size() == 3) {
+    const double side = left_of(at(0), at(1), at(2)) > 0 ? 1 : -1;
+    take([&](const V3& x) { return -std::min({side * left_of(at(0), at(1), x), side * left_of(at(1), at(2), x), side * left_of(at(2), at(0), x)}); });
+  }
+  std::sort(kept.begin(), kept.end());
+  std::vector<ContactPoint> out;
+  for (const std::size_t i : kept) out.push_back(found[i]);
+  found = std::move(out);
+}
+
 void ground_contacts(const Placed& p, double height, double margin, std::vector<ContactPoint>& out) {
   std::vector<ContactPoint> found;
   for (V3 x : low_points(p, margin)) {
@@ -77,7 +127,10 @@ void ground_contacts(const Placed& p, double height, double margin, std::vector<
     x[2] = height;
     found.push_back({p.body, ground, x, {0, 0, 1}, gap, p.shape->friction});
   }
-  if (found.size() > 4) {  // the 4 deepest, in the order found
+  drop_repeated(found);
+  if (found.size() > 4 && p.shape->kind == Shape::Kind::hull) {
+    keep_farthest(found);
+  } else if (found.size() > 4) {  // the 4 deepest, in the order found
     std::vector<double> gaps;
     for (const ContactPoint& c : found) gaps.push_back(c.gap);
     std::nth_element(gaps.begin(), gaps.begin() + 3, gaps.end());
@@ -183,11 +236,12 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
   std::vector<ContactPoint> out;
   if (search.ground)
     for (const Placed& p : shapes) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], search.margin, out);
-  Index skipped = 0;
+  Index with_cylinder = 0, with_hull = 0;
   for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
     const Placed &a = shapes[i], &b = shapes[j];
-    if (a.shape->kind == Shape::Kind::cylinder || b.shape->kind == Shape::Kind::cylinder) {
-      ++skipped;
+    auto either = [&](Shape::Kind kind) { return a.shape->kind == kind || b.shape->kind == kind; };
+    if (either(Shape::Kind::hull) || either(Shape::Kind::cylinder)) {
+      ++(either(Shape::Kind::hull) ? with_hull : with_cylinder);
       continue;
     }
     const V3 shift = reference_of(poses, b.body) - reference_of(poses, a.body);
@@ -195,7 +249,8 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
       if (c.gap <= search.margin)
         out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction)});
   }
-  if (skipped > 0) notes.push_back(std::to_string(skipped) + " near pairs with a cylinder were not tested for contact");
+  if (with_cylinder > 0) notes.push_back(std::to_string(with_cylinder) + " near pairs with a cylinder were not tested for contact");
+  if (with_hull > 0) notes.push_back(std::to_string(with_hull) + " near pairs with a mesh were not tested for contact");
   return out;
 }
 

@@ -1,10 +1,11 @@
 // Contact points found from the collision primitives of a model at a configuration.
 //
-// Found are points whose gap is at most `margin` (penetration included), at most 4 per pair of surfaces:
+// Found are points whose gap is at most `margin` (penetration included), at most 4 per pair of surfaces, none twice:
 //   ground   sphere: lowest point · box: vertices · capsule: lowest point of each end · cylinder: up to 4 rim points
+//            hull (of a mesh): vertices, of more than 4 those that reach farthest on the plane
 //   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
 //            edges), capsule–box by its two end spheres, capsule–capsule at the closest points
-// Pairs that involve a cylinder and pairs of links of one robot are not tested; a note counts the former.
+// Pairs that involve a cylinder or a hull and pairs of links of one robot are not tested; notes count the former.
 #pragma once
 
 #include <string>
@@ -29,8 +30,8 @@ struct ContactSearch {
   std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
 };
 
-/// Points in the order (first body, second body, shapes, position on the face). `notes` gets one sentence when pairs
-/// were skipped. Cost O(N log N + pairs) for shapes spread out along x.
+/// Points in the order (first body, second body, shapes, position on the face). `notes` gets a sentence for each
+/// kind of pair that was skipped. Cost O(N log N + pairs) for shapes spread out along x.
 [[nodiscard]] std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses,
                                                       const ContactSearch& search, std::vector<std::string>& notes);
 

@@ -55,6 +55,8 @@ Robot add_robot(Model& model, const RobotOptions& options) {
   const std::size_t first = model.bodies.size();
   Robot robot = reader_of(options.file).read(model, options);
   check_regular_robot(model, first, options.file);
+  robot.file = options.file;
+  robot.mesh_path = options.mesh_path;
   return robot;
 }
 

@@ -49,6 +49,7 @@ struct RobotOptions {
   std::map<std::string, double> armature;                ///< by joint name; replaces the file's
   double armature_of_all = -1;                           ///< of joints that neither `armature` nor the file gives one; negative: none
   std::string keyframe;                                  ///< MJCF only: name or number of the pose to start in; empty: the drawn one
+  std::vector<std::string> mesh_path;                    ///< folders that hold packages (package://name/...) or meshes
   bool strict = false;                                   ///< warnings are errors
 };
 
@@ -58,11 +59,23 @@ struct Robot {
     Index body, master;  ///< bodies moved by the joints
     double multiplier, offset;
   };
+  /// A collision mesh, not read yet: models/mesh.h does that where contacts are looked for.
+  struct Mesh {
+    Index body;
+    Pose<double> placement;               ///< of the mesh's frame in the body
+    Vector3<double> scale{1, 1, 1};
+    std::string uri, part;                ///< as in the file; part: the one object of the mesh file that is meant, "": all
+    std::string element;                  ///< `link "arm" <mesh> (line 7)`
+    double friction = -1;                 ///< Coulomb coefficient; negative: not given
+  };
   std::string name, root_joint;           ///< root_joint: name of the base joint, "" for a fixed base
   std::map<std::string, Frame> links;     ///< every link by its name in the file; merged ones at their place in the body
   std::map<std::string, Index> joints;    ///< moving joints by their name in the file → body they move
   std::vector<Index> bodies;              ///< in order of the model
   std::vector<std::pair<Index, std::vector<double>>> start;  ///< body → its entries of q, where the file gives a pose
+  std::string file;                       ///< it was read from
+  std::vector<std::string> mesh_path;
+  std::vector<Mesh> meshes;
   std::vector<Mimic> mimics;              ///< their coupling constraints are already in the model
   std::vector<std::string> notes;
   std::vector<Warning> warnings;

@@ -1,5 +1,6 @@
 #include <Eigen/Eigenvalues>
 
+#include "models/mesh.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -30,6 +31,14 @@ void SceneLoader::detect(const Yaml* y) {
   search.ground_height = scene_.ground_height;
   search.object = object_;
   if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
+  Index vertices = 64;
+  if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
+    y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10");
+  Findings found(strict_);
+  if (scene_.has_ground)
+    for (const Robot& r : robots_) add_hulls(scene_.model, r, vertices, search.margin, found);
+  scene_.notes.insert(scene_.notes.end(), found.notes.begin(), found.notes.end());
+  scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());
   for (const ContactPoint& p : find_contacts(scene_.model, poses_, search, scene_.notes)) {
     const auto i = static_cast<std::size_t>(p.body);
     Constraint c;
@@ -47,11 +56,11 @@ void SceneLoader::detect(const Yaml* y) {
 }
 
 void SceneLoader::read_contacts(const Yaml& y) {
-  const std::string accepted = "detect, {detect: true, margin, friction, damping}, or a list of {of, at, to, normal, friction, damping}";
+  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, damping}, or a list of {of, at, to, normal, friction, damping}";
   if (y.is_list()) {
     for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
   } else if (y.is_map()) {
-    y.keys({"detect", "margin", "friction", "damping"});
+    y.keys({"detect", "margin", "hull_vertices", "friction", "damping"});
     if (y.at("detect").boolean()) detect(&y);
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);

@@ -64,6 +64,11 @@ RobotOptions SceneLoader::robot_options(const Yaml& y, const std::string& name) 
   o.base_given = y.has("base");
   if (o.base_given) o.base = base_of(y.at("base"));
   if (y.has("pose")) o.pose = y.at("pose").pose();
+  if (y.has("mesh_path"))
+    for (const Yaml& folder : y.at("mesh_path").list("a list of folders")) {
+      const std::filesystem::path p = folder.text("a folder");
+      o.mesh_path.push_back(p.is_relative() ? (std::filesystem::path(path_).parent_path() / p).string() : p.string());
+    }
   if (y.has("joint_types"))
     for (const auto& [joint, value] : y.at("joint_types").entries()) {
       RobotOptions::Type type;
@@ -165,7 +170,7 @@ void SceneLoader::check_ranges(const Robot& robot, const Yaml& y) {
 }
 
 void SceneLoader::read_robot(const Yaml& y) {
-  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature"});
+  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature", "mesh_path"});
   const RobotOptions options = robot_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
   Robot robot = add_robot(scene_.model, options);

@@ -151,7 +151,7 @@ class Loader {
     out_.links[link] = frame;
     const CheckedUrdf::Link& said = checked_.links.at(link);
     if (frame.body == ground) {
-      if (!said.shapes.empty()) tally_.add("fixed to the world, collision shapes left out", options_.robot + "/" + link);
+      if (!said.shapes.empty() || !said.meshes.empty()) tally_.add("fixed to the world, collision shapes left out", options_.robot + "/" + link);
       return;
     }
     const auto k = static_cast<std::size_t>(frame.body - first_);
@@ -163,6 +163,11 @@ class Loader {
     for (Shape s : said.shapes) {
       s.placement = frame.placement * s.placement;
       bodies_[k].shapes.push_back(s);
+    }
+    for (Robot::Mesh m : said.meshes) {
+      m.body = frame.body;
+      m.placement = frame.placement * m.placement;
+      out_.meshes.push_back(m);
     }
   }
 

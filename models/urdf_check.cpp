@@ -73,7 +73,7 @@ CheckedUrdf read_elements(const std::string& file, XMLElement& robot, Findings& 
   if (out.links.empty()) throw ModelError(file, "robot", "has no link", "at least one link");
   check_tree(out);
   tally.report(file, findings);
-  if (meshes > 0) findings.note(file + ": " + std::to_string(meshes) + " collision meshes left out");
+  if (meshes > 0) findings.note(file + ": " + std::to_string(meshes) + " collision meshes, read only where contacts are detected");
   return out;
 }
 

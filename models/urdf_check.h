@@ -33,6 +33,7 @@ struct CheckedUrdf {
     Inertial inertial;
     std::string inertial_place;  ///< `link "arm" <inertial> (line 7)`
     std::vector<Shape> shapes;   ///< collision primitives in the link frame
+    std::vector<Robot::Mesh> meshes;  ///< the same; `body` unused
   };
   struct JointRow {
     std::string name, type, parent, child;

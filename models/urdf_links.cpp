@@ -1,5 +1,6 @@
 // Links of a URDF: inertials and collision primitives.
 #include <array>
+#include <sstream>
 
 #include "models/message.h"
 #include "models/urdf_check.h"
@@ -61,8 +62,25 @@ std::vector<Shape> primitive(const Place& place, XMLElement& g, Shape shape, Fin
   return {};
 }
 
-/// The primitives of a link; meshes are counted.
-std::vector<Shape> shapes_of(const Place& place, XMLElement& link, Findings& findings, Tally& tally, int& meshes) {
+/// A mesh as it is named; the file is read where contacts are looked for.
+void add_mesh(const Place& place, const XMLElement& g, const Pose<double>& at, Findings& findings, std::vector<Robot::Mesh>& out) {
+  Robot::Mesh mesh;
+  mesh.placement = at;
+  mesh.element = place.element(g);
+  const char* const file = g.Attribute("filename");
+  if (file == nullptr) return findings.warn("mesh not found", place.file, mesh.element, "names no file and is left out", "filename=\"...\"");
+  mesh.uri = file;
+  std::vector<double> scale;
+  std::istringstream words(g.Attribute("scale") == nullptr ? "1 1 1" : g.Attribute("scale"));
+  for (std::string word; words >> word;) scale.push_back(finite_number(word).value_or(std::numeric_limits<double>::quiet_NaN()));
+  if (scale.size() != 3 || std::any_of(scale.begin(), scale.end(), [](double x) { return std::isnan(x); }))
+    return findings.warn("mesh not read", place.file, mesh.element, "scale = " + in_quotes(g.Attribute("scale")) + " is not understood, the mesh is left out", "3 finite numbers");
+  mesh.scale << scale[0], scale[1], scale[2];
+  out.push_back(mesh);
+}
+
+/// The primitives of a link; meshes apart, and counted.
+std::vector<Shape> shapes_of(const Place& place, XMLElement& link, Findings& findings, Tally& tally, int& meshes, std::vector<Robot::Mesh>& named) {
   std::vector<Shape> out;
   for (XMLElement* c = link.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
     Shape shape;
@@ -73,6 +91,7 @@ std::vector<Shape> shapes_of(const Place& place, XMLElement& link, Findings& fin
       findings.warn("collision without geometry", place.file, place.element(*c), "has no geometry and is left out", "box, cylinder, sphere, capsule or mesh");
     } else if (std::string_view(g->Name()) == "mesh") {
       ++meshes;
+      add_mesh(place, *g, shape.placement, findings, named);
     } else {
       for (const Shape& s : primitive(place, *g, shape, findings, tally)) out.push_back(s);
     }
@@ -88,7 +107,7 @@ void check_link(const std::string& file, XMLElement& e, CheckedUrdf& out, Findin
   CheckedUrdf::Link link;
   link.line = e.GetLineNum();
   read_inertial(place, e, link);
-  link.shapes = shapes_of(place, e, findings, tally, meshes);
+  link.shapes = shapes_of(place, e, findings, tally, meshes, link.meshes);
   if (!out.links.emplace(name, std::move(link)).second) place.fail(e, "the name is taken", "unique link names");
 }
 

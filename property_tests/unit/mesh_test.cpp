@@ -1,0 +1,176 @@
+// Collision meshes: files found and read, hulls in scenes.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "models/hull.h"
+#include "models/mesh.h"
+#include "property_tests/unit/temporary.h"
+
+namespace delassus {
+namespace {
+
+namespace fs = std::filesystem;
+using test::temporary;
+using V3 = Vector3<double>;
+
+#define NEEDS_MESHES \
+  if (!has_mesh_files() || !has_hulls()) GTEST_SKIP() << "built without assimp or qhull"
+
+/// A tetrahedron: corner at the origin, edges of these lengths along x, y, z.
+const std::vector<V3> tetrahedron{V3(0, 0, 0), V3(1, 0, 0), V3(0, 2, 0), V3(0, 0, 4)};
+constexpr int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+std::string coordinates(const V3& p) { return std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]); }
+
+std::string stl() {
+  std::string out = "solid t\n";
+  for (const auto& f : faces) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (const int i : f) out += "vertex " + coordinates(tetrahedron[static_cast<std::size_t>(i)]) + "\n";
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid t\n";
+}
+
+std::string binary_stl() {
+  std::string out(80, ' ');
+  auto add = [&](auto x) { out.append(reinterpret_cast<const char*>(&x), sizeof x); };
+  add(std::uint32_t{4});
+  for (const auto& f : faces) {
+    for (int k = 0; k < 3; ++k) add(0.0f);
+    for (const int i : f)
+      for (int k = 0; k < 3; ++k) add(static_cast<float>(tetrahedron[static_cast<std::size_t>(i)][k]));
+    add(std::uint16_t{0});
+  }
+  return out;
+}
+
+std::string obj() {
+  std::string out = "# two objects\no tetrahedron\n";
+  for (const V3& p : tetrahedron) out += "v " + coordinates(p) + "\n";
+  for (const auto& f : faces) out += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + " " + std::to_string(f[2] + 1) + "\n";
+  out += "o plate\nv 9 0 0\nv 9 1 0\nv 9 0 1\nf 5 6 7\n";
+  return out;
+}
+
+/// `unit` in metres; a node that turns x to y about z and moves by (5, 0, 0) holds the geometry.
+std::string dae(const std::string& unit, const std::string& up) {
+  std::string positions, triangles;
+  for (const V3& p : tetrahedron) positions += coordinates(p) + " ";
+  for (const auto& f : faces)
+    for (const int i : f) triangles += std::to_string(i) + " ";
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="u" meter=")" + unit + R"("/><up_axis>)" + up + R"(</up_axis></asset>
+<library_geometries><geometry id="g" name="g"><mesh>
+<source id="p"><float_array id="pa" count="12">)" + positions + R"(</float_array><technique_common>
+<accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
+</technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>)" + triangles + R"(</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n" name="n"><matrix>0 -1 0 5  1 0 0 0  0 0 1 0  0 0 0 1</matrix>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+struct Before {
+  bool operator()(const V3& a, const V3& b) const { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); }
+};
+using Set = std::set<V3, Before>;
+
+/// Distinct points in units of 1e-6: files hold floats.
+Set rounded(const std::vector<V3>& points) {
+  Set out;
+  for (const V3& p : points) out.insert((p * 1e6).array().round() + 0.0);
+  return out;
+}
+
+Set points_of(const fs::path& file, const std::string& part = "") { return rounded(mesh_points(file.string(), part)); }
+
+Set expected(const Matrix3<double>& R, const V3& t) {
+  std::vector<V3> out;
+  for (const V3& p : tetrahedron) out.push_back(R * p + t);
+  return rounded(out);
+}
+
+TEST(Meshes, stl_and_obj_as_written) {
+  NEEDS_MESHES;
+  const fs::path a = temporary("mesh/a.stl"), b = temporary("mesh/b.stl"), c = temporary("mesh/c.obj");
+  write(a, stl()), write(b, binary_stl()), write(c, obj());
+  const Set tetra = expected(Matrix3<double>::Identity(), V3::Zero());
+  EXPECT_EQ(points_of(a), tetra);
+  EXPECT_EQ(points_of(b), tetra);
+  EXPECT_EQ(points_of(c).size(), 7u);
+  EXPECT_EQ(points_of(c, "tetrahedron"), tetra);
+  EXPECT_THROW((void)mesh_points(c.string(), "lid"), std::runtime_error);
+}
+
+TEST(Meshes, dae_in_its_unit_and_its_own_axes_with_its_nodes) {
+  NEEDS_MESHES;
+  Matrix3<double> R;
+  R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  for (const char* up : {"Z_UP", "Y_UP", "X_UP"}) {
+    const fs::path file = temporary(std::string("mesh/") + up + ".dae");
+    write(file, dae("1", up));
+    EXPECT_EQ(points_of(file), expected(R, V3(5, 0, 0))) << up;
+    write(file, dae("0.01", up));
+    EXPECT_EQ(points_of(file), expected(0.01 * R, V3(0.05, 0, 0))) << up;
+  }
+}
+
+TEST(Meshes, what_cannot_be_read_says_why) {
+  NEEDS_MESHES;
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"empty.stl", ""}, {"broken.dae", "<COLLADA"}, {"none.obj", "# nothing\n"}, {"what.xyz", "1 2 3"}}) {
+    const fs::path file = temporary("mesh/" + name);
+    write(file, text);
+    try {
+      (void)mesh_points(file.string());
+      FAIL() << name;
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()), "") << name;
+    }
+  }
+}
+
+TEST(Meshes, are_found_where_the_page_says) {
+  const fs::path root = temporary("found");
+  for (const char* p : {"ws/arm_description/meshes/a.stl", "ws/arm_description/urdf/arm.urdf", "ws/hand/b.stl", "extra/tool/c.stl", "extra/loose.stl", "ros/base/d.stl"})
+    write(root / p, "x");
+  const std::string robot = (root / "ws/arm_description/urdf/arm.urdf").string();
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", (":/nowhere:" + (root / "ros").string()).c_str(), 1), 0);
+  auto found = [&](const std::string& uri, const std::vector<std::string>& path = {}) {
+    std::string tried;
+    const std::string file = find_mesh(uri, robot, path, tried);
+    EXPECT_EQ(tried.empty(), !file.empty()) << uri;
+    return file.empty() ? "" : fs::relative(fs::weakly_canonical(file), fs::canonical(root)).string();
+  };
+  const std::string extra = (root / "extra").string();
+  EXPECT_EQ(found("../meshes/a.stl"), "ws/arm_description/meshes/a.stl");
+  EXPECT_EQ(found("file://" + (root / "ws/hand/b.stl").string()), "ws/hand/b.stl");
+  EXPECT_EQ(found((root / "ws/hand/b.stl").string()), "ws/hand/b.stl");
+  EXPECT_EQ(found("package://arm_description/meshes/a.stl"), "ws/arm_description/meshes/a.stl");
+  EXPECT_EQ(found("model://arm_description/meshes/a.stl"), "ws/arm_description/meshes/a.stl");
+  EXPECT_EQ(found("package://hand/b.stl"), "ws/hand/b.stl");
+  EXPECT_EQ(found("package://base/d.stl"), "ros/base/d.stl");
+  EXPECT_EQ(found("package://tool/c.stl"), "");
+  EXPECT_EQ(found("package://tool/c.stl", {extra}), "extra/tool/c.stl");
+  EXPECT_EQ(found("package://tool/c.stl", {extra + "/tool/"}), "extra/tool/c.stl");
+  EXPECT_EQ(found("loose.stl"), "");
+  EXPECT_EQ(found("loose.stl", {extra}), "extra/loose.stl");
+  for (const char* uri : {"", "file://", "package://", "package://a", "package:///x", "http://a/b.stl", "..", "$(find x)/a.stl"}) EXPECT_EQ(found(uri, {extra}), "") << uri;
+  unsetenv("ROS_PACKAGE_PATH");
+}
+
+}  // namespace
+}  // namespace delassus
