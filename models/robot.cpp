@@ -5,6 +5,7 @@
 #include "algorithms/regularity.h"
 #include "models/message.h"
 #include "models/mjcf.h"
+#include "models/sdf.h"
 #include "models/urdf.h"
 #include "models/urdf_xml.h"
 
@@ -18,7 +19,7 @@ struct Reader {
   Robot (*read)(Model& model, const RobotOptions& options);
 };
 
-constexpr Reader readers[] = {{"robot", "URDF", add_urdf}, {"mujoco", "MJCF", add_mjcf}};
+constexpr Reader readers[] = {{"robot", "URDF", add_urdf}, {"mujoco", "MJCF", add_mjcf}, {"sdf", "SDF", add_sdf}};
 
 const Reader& reader_of(const std::string& file) {
   tinyxml2::XMLDocument document;

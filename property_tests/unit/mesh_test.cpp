@@ -9,6 +9,7 @@
 
 #include "models/hull.h"
 #include "models/mesh.h"
+#include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
 namespace delassus {
@@ -170,6 +171,76 @@ TEST(Meshes, are_found_where_the_page_says) {
   EXPECT_EQ(found("loose.stl", {extra}), "extra/loose.stl");
   for (const char* uri : {"", "file://", "package://", "package://a", "package:///x", "http://a/b.stl", "..", "$(find x)/a.stl"}) EXPECT_EQ(found(uri, {extra}), "") << uri;
   unsetenv("ROS_PACKAGE_PATH");
+}
+
+/// A robot of two links on the ground, its collision shapes given.
+Scene scene_with(const std::string& name, const std::string& collision, const std::string& contacts, const std::string& keys = "") {
+  const std::string inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+  write(temporary("scene/" + name + ".urdf"), "<robot name='r'><link name='a'>" + inertial + collision + "</link><link name='b'>" + inertial +
+        "</link><joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>");
+  const fs::path scene = temporary("scene/" + name + ".yaml");
+  write(scene, "robots:\n  - {name: r, file: " + name + ".urdf, pose: {xyz: [0, 0, 0.1], rpy: [0, 0, 0.3]}" + keys + "}\nground: {z: 0}\n" + (contacts.empty() ? "" : "contacts: " + contacts + "\n"));
+  return load_scene(scene.string());
+}
+
+std::string cube_obj() {
+  std::string out;
+  for (int k = 0; k < 8; ++k) out += "v " + coordinates(V3(k & 1 ? 2 : -2, k & 2 ? 4 : -4, k & 4 ? 1 : -1)) + "\n";
+  for (const char* f : {"1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"}) out += "f " + std::string(f) + "\n";
+  return out;
+}
+
+const char* const mesh_of_cube = "<collision><origin xyz='0.01 0 0' rpy='0 0 0.2'/><geometry><mesh filename='package://shapes/cube.obj' scale='0.1 0.1 0.1'/></geometry></collision>";
+
+TEST(Meshes, touch_the_ground_as_the_same_box_does) {
+  NEEDS_MESHES;
+  write(temporary("scene/shapes/cube.obj"), cube_obj());
+  const Scene mesh = scene_with("mesh", mesh_of_cube, "detect");
+  const Scene box = scene_with("box", "<collision><origin xyz='0.01 0 0' rpy='0 0 0.2'/><geometry><box size='0.4 0.8 0.2'/></geometry></collision>", "detect");
+  ASSERT_EQ(mesh.model.constraints.size(), 4u);
+  ASSERT_EQ(box.model.constraints.size(), 4u);
+  std::vector<V3> a, b;
+  for (const Constraint& c : mesh.model.constraints) a.push_back(c.b.placement.translation);
+  for (const Constraint& c : box.model.constraints) b.push_back(c.b.placement.translation);
+  for (const V3& p : a) EXPECT_TRUE(std::any_of(b.begin(), b.end(), [&](const V3& x) { return (x - p).norm() < 1e-7; }));  // floats in the file
+  EXPECT_TRUE(mesh.warnings.empty());
+  EXPECT_TRUE(std::any_of(mesh.notes.begin(), mesh.notes.end(), [](const std::string& n) { return n.find("1 collision mesh as convex hull") != std::string::npos; }));
+}
+
+TEST(Meshes, are_read_only_for_contacts) {
+  NEEDS_MESHES;
+  write(temporary("scene/shapes/cube.obj"), "no mesh at all");
+  EXPECT_TRUE(scene_with("lazy", mesh_of_cube, "").warnings.empty());
+  const Scene s = scene_with("lazy", mesh_of_cube, "detect");
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_EQ(s.warnings[0].kind, "mesh not read");
+  EXPECT_TRUE(s.model.constraints.empty());
+  const Scene lost = scene_with("lost", "<collision><geometry><mesh filename='package://elsewhere/x.stl'/></geometry></collision>", "detect");
+  ASSERT_EQ(lost.warnings.size(), 1u);
+  EXPECT_EQ(lost.warnings[0].kind, "mesh not found");
+  EXPECT_NE(lost.warnings[0].text.find("mesh_path"), std::string::npos);
+  write(temporary("scene/other/elsewhere/x.stl"), stl());
+  const Scene found = scene_with("found", "<collision><geometry><mesh filename='package://elsewhere/x.stl'/></geometry></collision>", "{detect: true, margin: 0.2}", ", mesh_path: [other]");
+  EXPECT_TRUE(found.warnings.empty());
+  EXPECT_EQ(found.model.constraints.size(), 3u);  // the tetrahedron stands on a face
+}
+
+TEST(Meshes, say_how_far_their_hulls_are_cut) {
+  NEEDS_MESHES;
+  std::string ball;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 1; j < 20; ++j)
+      ball += "v " + coordinates(0.1 * V3(std::cos(M_PI * i / 20) * std::sin(M_PI * j / 20), std::sin(M_PI * i / 20) * std::sin(M_PI * j / 20), std::cos(M_PI * j / 20))) + "\n";
+  for (int i = 1; i + 2 <= 760; ++i) ball += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
+  write(temporary("scene/shapes/ball.obj"), ball);
+  const std::string collision = "<collision><geometry><mesh filename='shapes/ball.obj'/></geometry></collision>";
+  auto warned = [&](const std::string& contacts) { return scene_with("ball", collision, contacts).warnings.size(); };
+  EXPECT_EQ(warned("detect"), 1u);
+  EXPECT_EQ(warned("{detect: true, margin: 0.02}"), 0u);
+  EXPECT_EQ(warned("{detect: true, hull_vertices: 1000}"), 0u);
+  const Scene s = scene_with("ball", collision, "{detect: true, margin: 0.02}");
+  EXPECT_TRUE(std::any_of(s.notes.begin(), s.notes.end(), [](const std::string& n) { return n.find("cut to 64 vertices: by at most") != std::string::npos; }));
+  EXPECT_THROW((void)warned("{detect: true, hull_vertices: 3}"), ModelError);
 }
 
 }  // namespace

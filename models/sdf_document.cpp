@@ -1,0 +1,322 @@
+#include "models/sdf_document.h"
+
+#include "algorithms/status.h"
+
+#ifdef DELASSUS_SDFORMAT
+
+#include <filesystem>
+#include <mutex>
+#include <sstream>
+
+#include <tinyxml2.h>
+
+#include <sdf/sdf.hh>
+
+#include <Eigen/Geometry>
+
+#include "models/mesh.h"
+#include "models/message.h"
+
+namespace delassus {
+namespace {
+
+namespace fs = std::filesystem;
+using V3 = Vector3<double>;
+
+V3 vector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+
+Pose<double> pose_of(const ignition::math::Pose3d& p) {
+  return {Eigen::Quaterniond(p.Rot().W(), p.Rot().X(), p.Rot().Y(), p.Rot().Z()).normalized().toRotationMatrix(), vector(p.Pos())};
+}
+
+/// What libsdformat prints, kept. Its console is global: one file at a time.
+class Listener {
+ public:
+  Listener() : lock_(mutex()) { stream().SetStream(&text_); }
+  ~Listener() { stream().SetStream(&std::cerr); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  /// One entry per message, without colours and source lines.
+  [[nodiscard]] std::vector<std::string> messages() const {
+    std::vector<std::string> out;
+    std::string plain;
+    bool escape = false;
+    for (const char c : text_.str()) {
+      if (c == '\x1b') escape = true;
+      if (!escape) plain += c;
+      if (escape && c == 'm') escape = false;
+    }
+    std::istringstream lines(plain);
+    for (std::string line; std::getline(lines, line);) {
+      const bool begins = line.rfind("Warning [", 0) == 0 || line.rfind("Error [", 0) == 0 || line.rfind("Error Code", 0) == 0;
+      const std::size_t source = line.find("] ");
+      if (begins && source != std::string::npos) line = line.substr(source + 2);
+      const std::size_t first = line.find_first_not_of(" \t");
+      if (first == std::string::npos) continue;
+      if (begins || out.empty()) out.push_back(line.substr(first));
+      else out.back() += " " + line.substr(first);
+    }
+    return out;
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  static sdf::Console::ConsoleStream& stream() { return sdf::Console::Instance()->GetMsgStream(); }
+  std::lock_guard<std::mutex> lock_;
+  std::ostringstream text_;
+};
+
+/// Numbers of the file itself, read once more: the library takes the beginning of "2kg" for 2.
+void check_numbers(const std::string& file, const tinyxml2::XMLElement& root) {
+  static const char* const names[] = {"mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "pose", "xyz", "damping", "friction", "lower", "upper", "effort",
+                                      "velocity", "radius", "length", "size", "scale", "thread_pitch", "gearbox_ratio", "radii"};
+  std::vector<const tinyxml2::XMLElement*> stack{&root};
+  while (!stack.empty()) {
+    const tinyxml2::XMLElement* e = stack.back();
+    stack.pop_back();
+    const std::string name = e->Name();
+    if (name == "plugin" || name == "visual" || name == "sensor" || name == "gui" || name == "scene" || name == "light" || name == "actor" || name == "state") continue;
+    for (const tinyxml2::XMLElement* c = e->LastChildElement(); c; c = c->PreviousSiblingElement()) stack.push_back(c);
+    if (e->GetText() == nullptr || e->FirstChildElement() != nullptr) continue;
+    if (std::none_of(std::begin(names), std::end(names), [&](const char* n) { return name == n; })) continue;
+    std::istringstream words(e->GetText());
+    for (std::string word; words >> word;) {
+      const bool infinite = word == "inf" || word == "-inf" || word == "+inf" || word == "Inf" || word == "-Inf" || word == "INF" || word == "-INF";
+      const bool bound = name == "lower" || name == "upper" || name == "effort" || name == "velocity";
+      if (finite_number(word) || (bound && infinite)) continue;
+      throw ModelError(file, "<" + name + "> (line " + std::to_string(e->GetLineNum()) + ")", in_quotes(e->GetText()) + " is not finite",
+                       bound ? "a number, inf or -inf" : "finite numbers");
+    }
+  }
+}
+
+class SdfReader {
+ public:
+  SdfReader(const RobotOptions& options, Findings& findings) : options_(options), findings_(findings) {}
+
+  SdfDocument run() {
+    {
+      tinyxml2::XMLDocument document;
+      if (document.LoadFile(options_.file.c_str()) == tinyxml2::XML_SUCCESS && document.RootElement() != nullptr)
+        check_numbers(options_.file, *document.RootElement());
+    }
+    const Listener listener;
+    load();
+    for (const std::string& text : listener.messages()) {
+      std::string advice = "see what it says";
+      findings_.warn("said by libsdformat", options_.file, "<sdf>", text, advice);
+    }
+    std::vector<const sdf::Model*> models;
+    if (root_.Model() != nullptr) models.push_back(root_.Model());
+    for (uint64_t w = 0; w < root_.WorldCount(); ++w)
+      for (uint64_t k = 0; k < root_.WorldByIndex(w)->ModelCount(); ++k) models.push_back(root_.WorldByIndex(w)->ModelByIndex(k));
+    for (const sdf::Model* m : models) add_model(*m, {}, models.size() > 1 ? m->Name() + "::" : "", false);
+    if (out_.links.empty()) throw ModelError(options_.file, "<sdf>", "has no link", "a <model>, or a <world> with models");
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& element, const std::string& problem, const std::string& accepted) const {
+    throw ModelError(options_.file, element, problem, accepted);
+  }
+
+  void load() {
+    sdf::ParserConfig config;
+    config.SetFindCallback([&](const std::string& uri) {
+      std::string tried;
+      std::string found = find_mesh(uri, options_.file, options_.mesh_path, tried);
+      if (found.empty()) found = folder_of(uri);
+      return found;
+    });
+    sdf::Errors errors;
+    std::string thrown;
+    try {
+      errors = root_.Load(options_.file, config);
+    } catch (const std::exception& e) {
+      thrown = e.what();
+    }
+    std::string fatal = thrown;
+    for (const sdf::Error& e : errors) {
+      if (e.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) continue;  // judged like those of all readers
+      if (e.Code() == sdf::ErrorCode::URI_LOOKUP || e.Code() == sdf::ErrorCode::URI_INVALID)
+        findings_.warn("include not found", options_.file, "<include>", e.Message(), "what it holds is not in the model; mesh_path: [folders] in the scene's robot entry says where models are");
+      else if (fatal.size() < 1000) fatal += (fatal.empty() ? "" : "; ") + e.Message();
+    }
+    if (!fatal.empty()) fail("<sdf>", "libsdformat: " + fatal, "an SDF file that libsdformat " + std::string(SDF_VERSION_FULL) + " reads");
+  }
+
+  /// The folder a model://name stands for, "" when there is none.
+  [[nodiscard]] std::string folder_of(const std::string& uri) const {
+    for (const char* scheme : {"model://", "package://"}) {
+      if (uri.rfind(scheme, 0) != 0) continue;
+      const std::string name = uri.substr(std::string_view(scheme).size());
+      std::string tried;
+      const std::string config = find_mesh(uri + "/model.config", options_.file, options_.mesh_path, tried);
+      if (!name.empty() && !config.empty()) return fs::path(config).parent_path().string();
+    }
+    std::error_code error;
+    const fs::path beside = fs::path(options_.file).parent_path() / uri;
+    return uri.find("://") == std::string::npos && fs::exists(beside, error) ? beside.string() : "";
+  }
+
+  template <class Semantic> Pose<double> resolve(const Semantic& s, const std::string& in, const std::string& element) const {
+    ignition::math::Pose3d out;
+    const sdf::Errors errors = s.Resolve(out, in);
+    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "a pose that can be resolved");
+    if (!out.IsFinite()) fail(element, "its pose is not finite", "finite numbers");
+    return pose_of(out);
+  }
+
+  void add_model(const sdf::Model& m, const Pose<double>& outer, const std::string& scope, bool fixed) {
+    const std::string element = "model " + in_quotes(m.Name());
+    const Pose<double> X = outer * resolve(m.SemanticPose(), "", element);
+    fixed = fixed || m.Static();
+    for (uint64_t k = 0; k < m.LinkCount(); ++k) add_link(*m.LinkByIndex(k), X, scope, fixed);
+    for (uint64_t k = 0; k < m.ModelCount(); ++k) add_model(*m.ModelByIndex(k), X, scope + m.ModelByIndex(k)->Name() + "::", fixed);
+    for (uint64_t k = 0; k < m.JointCount(); ++k) add_joint(*m.JointByIndex(k), X, scope);
+  }
+
+  void add_link(const sdf::Link& l, const Pose<double>& model, const std::string& scope, bool fixed) {
+    SdfDocument::Link out;
+    out.name = scope + l.Name();
+    const std::string element = "link " + in_quotes(out.name);
+    out.pose = model * resolve(l.SemanticPose(), "__model__", element);
+    out.fixed = fixed;
+    out.has_inertial = l.Element() != nullptr && l.Element()->HasElement("inertial");
+    out.mass = l.Inertial().MassMatrix().Mass();
+    out.centre = pose_of(l.Inertial().Pose());
+    const ignition::math::Matrix3d I = l.Inertial().MassMatrix().Moi();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) out.inertia(i, j) = I(i, j);
+    for (uint64_t k = 0; k < l.CollisionCount(); ++k) add_collision(*l.CollisionByIndex(k), element, out);
+    out_.links.push_back(std::move(out));
+  }
+
+  void add_collision(const sdf::Collision& c, const std::string& link, SdfDocument::Link& out) {
+    const std::string element = link + " <collision name=" + in_quotes(c.Name()) + ">";
+    const sdf::Geometry& g = *c.Geom();
+    Shape s;
+    s.placement = resolve(c.SemanticPose(), "", element);
+    s.friction = friction(c);
+    switch (g.Type()) {
+      case sdf::GeometryType::BOX: s.kind = Shape::Kind::box, s.size = vector(g.BoxShape()->Size()) / 2; break;
+      case sdf::GeometryType::SPHERE: s.kind = Shape::Kind::sphere, s.size[0] = g.SphereShape()->Radius(); break;
+      case sdf::GeometryType::CYLINDER: s.kind = Shape::Kind::cylinder, s.size << g.CylinderShape()->Radius(), g.CylinderShape()->Length() / 2, 0; break;
+      case sdf::GeometryType::CAPSULE: s.kind = Shape::Kind::capsule, s.size << g.CapsuleShape()->Radius(), g.CapsuleShape()->Length() / 2, 0; break;
+      case sdf::GeometryType::MESH: return add_mesh(*g.MeshShape(), s, element, out);
+      case sdf::GeometryType::EMPTY: return;
+      case sdf::GeometryType::PLANE: return left_out(element, "a plane", "ground: {z: ...} of the scene");
+      case sdf::GeometryType::HEIGHTMAP: return left_out(element, "a heightmap", "boxes of the scene");
+      case sdf::GeometryType::ELLIPSOID: return left_out(element, "an ellipsoid", "a sphere, capsule, box or mesh");
+    }
+    const bool cylinder = s.kind == Shape::Kind::cylinder;
+    const Index sizes = s.kind == Shape::Kind::box ? 3 : cylinder ? 2 : 1;
+    if (s.size.minCoeff() < 0) fail(element, "a size of " + number_text(2 * s.size.minCoeff()) + " m is negative", "lengths >= 0 [m]");
+    if (s.kind == Shape::Kind::capsule && s.size[1] == 0) s.kind = Shape::Kind::sphere;
+    if (sizes > 1 && s.size.head(sizes).minCoeff() == 0)
+      return findings_.warn("flat collision shape", options_.file, element, "a shape without volume is left out", "lengths > 0 [m]");
+    out.shapes.push_back(s);
+  }
+
+  void left_out(const std::string& element, const std::string& what, const std::string& instead) {
+    findings_.note(options_.file + ": " + element + ": " + what + " is left out (" + instead + ")");
+  }
+
+  void add_mesh(const sdf::Mesh& m, const Shape& s, const std::string& element, SdfDocument::Link& out) {
+    Robot::Mesh mesh;
+    mesh.placement = s.placement;
+    mesh.scale = vector(m.Scale());
+    mesh.uri = m.Uri(), mesh.part = m.Submesh();
+    mesh.element = element + " <mesh>";
+    mesh.friction = s.friction;
+    if (!mesh.part.empty() && m.CenterSubmesh()) return left_out(element, "a centred part of a mesh", "a mesh file of its own");
+    out.meshes.push_back(mesh);
+  }
+
+  /// surface/friction/ode/mu, when it is given.
+  static double friction(const sdf::Collision& c) {
+    sdf::ElementPtr e = c.Element();
+    for (const char* name : {"surface", "friction", "ode", "mu"}) {
+      if (e == nullptr || !e->HasElement(name)) return -1;
+      e = e->GetElement(name);
+    }
+    const double mu = e->Get<double>();
+    return std::isfinite(mu) && mu >= 0 ? mu : -1;
+  }
+
+  void add_joint(const sdf::Joint& j, const Pose<double>& model, const std::string& scope) {
+    using Type = SdfDocument::Type;
+    SdfDocument::JointRow out;
+    out.name = scope + j.Name();
+    const std::string element = "joint " + in_quotes(out.name);
+    std::string parent, child;
+    sdf::Errors errors = j.ResolveParentLink(parent);
+    const sdf::Errors more = j.ResolveChildLink(child);
+    errors.insert(errors.end(), more.begin(), more.end());
+    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "two links of this model, or world");
+    out.parent = parent == "world" ? parent : scope + parent;
+    out.child = child == "world" ? child : scope + child;
+    out.pose = model * resolve(j.SemanticPose(), "__model__", element);
+    switch (j.Type()) {
+      case sdf::JointType::BALL: out.type = Type::ball; break;
+      case sdf::JointType::CONTINUOUS: out.type = Type::continuous; break;
+      case sdf::JointType::FIXED: out.type = Type::fixed; break;
+      case sdf::JointType::GEARBOX: out.type = Type::gearbox; break;
+      case sdf::JointType::PRISMATIC: out.type = Type::prismatic; break;
+      case sdf::JointType::REVOLUTE: out.type = Type::revolute; break;
+      case sdf::JointType::REVOLUTE2: out.type = Type::revolute2; break;
+      case sdf::JointType::SCREW: out.type = Type::screw; break;
+      case sdf::JointType::UNIVERSAL: out.type = Type::universal; break;
+      case sdf::JointType::INVALID: fail(element, "its type is not known", "a joint type of SDF");
+    }
+    for (unsigned k = 0; k < 2; ++k)
+      if (j.Axis(k) != nullptr) out.axes.push_back(axis(*j.Axis(k), element));
+    out.thread_pitch = j.ThreadPitch();
+    if (j.Element() != nullptr && j.Element()->HasElement("gearbox_ratio")) out.ratio = j.Element()->Get<double>("gearbox_ratio");
+    if (j.Element() != nullptr && j.Element()->HasElement("gearbox_reference_body")) out.reference = scope + j.Element()->Get<std::string>("gearbox_reference_body");
+    out_.joints.push_back(std::move(out));
+  }
+
+  SdfDocument::Axis axis(const sdf::JointAxis& a, const std::string& element) {
+    SdfDocument::Axis out;
+    ignition::math::Vector3d v;
+    const sdf::Errors errors = a.ResolveXyz(v);
+    if (!errors.empty()) fail(element + " <axis>", "libsdformat: " + errors[0].Message(), "an axis that can be resolved");
+    out.direction = vector(v);
+    if (!out.direction.allFinite() || out.direction.norm() == 0) fail(element + " <axis>", "(" + numbers_text(out.direction) + ") is no direction", "a vector that is not 0");
+    out.direction.normalize();
+    constexpr double unlimited = 1e16;  // SDF's own default of limits
+    out.damping = a.Damping(), out.friction = a.Friction();
+    out.lower = a.Lower(), out.upper = a.Upper(), out.effort = a.Effort(), out.velocity = a.MaxVelocity();
+    out.range_given = std::abs(out.lower) < unlimited || std::abs(out.upper) < unlimited;
+    out.effort_given = out.effort >= 0 && out.effort < unlimited, out.velocity_given = out.velocity >= 0 && out.velocity < unlimited;
+    return out;
+  }
+
+  const RobotOptions& options_;
+  Findings& findings_;
+  sdf::Root root_;
+  SdfDocument out_;
+};
+
+}  // namespace
+
+SdfDocument read_sdf(const RobotOptions& options, Findings& findings) { return SdfReader(options, findings).run(); }
+
+}  // namespace delassus
+
+#else
+
+namespace delassus {
+
+SdfDocument read_sdf(const RobotOptions& options, Findings&) {
+  throw ModelError(options.file, "<sdf>", "this program was built without libsdformat, which reads SDF", "libsdformat-dev (version 12) when building; or the robot as URDF");
+}
+
+}  // namespace delassus
+
+#endif
