@@ -8,8 +8,8 @@
 //           Body frames lie in the joints; Robot::links has the links' own frames. q = 0 is the file's pose.
 // Base      A link on a fixed joint to the world, or of a static model, stands; other roots float. `base` of the options
 //           changes that for the first root. The file as a whole is placed by `pose`.
-// Said      What libsdformat prints becomes a warning, what it refuses an error, in its words. Springs, sensors, plugins
-//           and dynamics of loop joints are not read.
+// Said      What libsdformat prints becomes a warning, what it refuses an error, in its words. Springs, visuals,
+//           sensors, plugins and dynamics of loop joints are not read.
 #pragma once
 
 #include "models/robot.h"

@@ -94,18 +94,38 @@ void check_numbers(const std::string& file, const tinyxml2::XMLElement& root) {
   }
 }
 
+/// Elements without a part in M, J and contacts: what is wrong in them is nothing to refuse a file for.
+void leave_out(tinyxml2::XMLElement& root) {
+  static const char* const names[] = {"visual", "sensor", "plugin", "gui", "scene", "light", "actor", "physics", "atmosphere", "magnetic_field",
+                                      "spherical_coordinates", "wind", "audio", "audio_sink", "audio_source", "state", "road", "particle_emitter", "battery", "projector"};
+  std::vector<tinyxml2::XMLElement*> stack{&root};
+  while (!stack.empty()) {
+    tinyxml2::XMLElement* e = stack.back();
+    stack.pop_back();
+    for (tinyxml2::XMLElement* c = e->FirstChildElement(); c;) {
+      tinyxml2::XMLElement* const next = c->NextSiblingElement();
+      const std::string_view name = c->Name();
+      const bool no_friction = (name == "mu" || name == "mu2") && c->GetText() != nullptr && finite_number(c->GetText()).value_or(0) < 0;  // -1: not given
+      if (no_friction || std::any_of(std::begin(names), std::end(names), [&](const char* n) { return name == n; })) e->DeleteChild(c);
+      else stack.push_back(c);
+      c = next;
+    }
+  }
+}
+
 class SdfReader {
  public:
   SdfReader(const RobotOptions& options, Findings& findings) : options_(options), findings_(findings) {}
 
   SdfDocument run() {
-    {
-      tinyxml2::XMLDocument document;
-      if (document.LoadFile(options_.file.c_str()) == tinyxml2::XML_SUCCESS && document.RootElement() != nullptr)
-        check_numbers(options_.file, *document.RootElement());
-    }
+    tinyxml2::XMLDocument document;
+    if (document.LoadFile(options_.file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) fail("file", "is no XML", "an SDF file");
+    check_numbers(options_.file, *document.RootElement());
+    leave_out(*document.RootElement());
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    document.Print(&printer);
     const Listener listener;
-    load();
+    load(printer.CStr());
     for (const std::string& text : listener.messages()) {
       std::string advice = "see what it says";
       findings_.warn("said by libsdformat", options_.file, "<sdf>", text, advice);
@@ -124,7 +144,7 @@ class SdfReader {
     throw ModelError(options_.file, element, problem, accepted);
   }
 
-  void load() {
+  void load(const std::string& text) {
     sdf::ParserConfig config;
     config.SetFindCallback([&](const std::string& uri) {
       std::string tried;
@@ -135,7 +155,7 @@ class SdfReader {
     sdf::Errors errors;
     std::string thrown;
     try {
-      errors = root_.Load(options_.file, config);
+      errors = root_.LoadSdfString(text, config);
     } catch (const std::exception& e) {
       thrown = e.what();
     }

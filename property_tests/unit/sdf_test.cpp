@@ -256,6 +256,13 @@ TEST(Sdf, says_what_it_cannot_read) {
   refused("<sdf version='1.9'/>", "no link");
   refused(sdf(a + "<link name='b'>" + inertial(1) + "</link><joint name='j' type='universal'><parent>a</parent><child>b</child>"
     "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2></joint>"), "parallel");
+  Model plain;  // what has no part in M, J and contacts is not judged
+  const std::string odd = "<visual name='v'><geometry><box><size>1 1 1</size></box></geometry><material><script><name>x</name></script></material></visual><sensor name='s' type='crystal_ball'/>"
+                          "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry><surface><friction><ode><mu>-1</mu></ode></friction></surface></collision>";
+  const Robot kept = read(write("sdf/odd.sdf", sdf("<link name='a'>" + inertial(1) + odd + "</link>")), plain);
+  EXPECT_TRUE(kept.warnings.empty());
+  ASSERT_EQ(plain.bodies[0].shapes.size(), 1u);
+  EXPECT_LT(plain.bodies[0].shapes[0].friction, 0);
   Model model;
   const Robot r = read(write("sdf/include.sdf", "<sdf version='1.9'><world name='w'><include><uri>model://no_such_model</uri></include><model name='m'>" + a + "</model></world></sdf>"), model);
   ASSERT_FALSE(r.warnings.empty());
