@@ -69,14 +69,11 @@ std::vector<V3> low_points(const Placed& p, double margin) {
   return out;
 }
 
-/// Of points that fall on one point of the plane (shapes of zero size, vertices above each other) the deepest stays.
+/// Shapes of zero thickness, length or radius give the same point more than once.
 void drop_repeated(std::vector<ContactPoint>& found) {
   std::vector<ContactPoint> out;
-  for (const ContactPoint& c : found) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const ContactPoint& o) { return o.point == c.point; });
-    if (same == out.end()) out.push_back(c);
-    else if (c.gap < same->gap) *same = c;
-  }
+  for (const ContactPoint& c : found)
+    if (std::none_of(out.begin(), out.end(), [&](const ContactPoint& o) { return o.point == c.point && o.gap == c.gap; })) out.push_back(c);
   found = std::move(out);
 }
 
@@ -91,7 +88,7 @@ std::size_t best_of(const std::vector<ContactPoint>& found, double lead, const s
 }
 
 /// The deepest point, the farthest from it on the plane, the farthest from the line through both, the farthest outside the
-/// triangle of the three. Ties, up to a millionth of the extent, go to the deeper one, then to the first; what reaches no
+/// triangle of the three; where all are on one line, the deepest and its ends. Ties, up to a millionth of the extent, go to the deeper one, then to the first; what reaches no
 /// farther than that is left out. Order as found.
 void keep_farthest(std::vector<ContactPoint>& found) {
   double extent = 0;
@@ -109,7 +106,9 @@ void keep_farthest(std::vector<ContactPoint>& found) {
   take([](const V3&) { return 0.0; });
   take([&](const V3& x) { return (x - at(0)).norm(); });
   if (kept.size() == 2) take([&](const V3& x) { return std::abs(left_of(at(0), at(1), x)); });
-  if (kept.size() == 3) {
+  if (kept.size() == 2) {
+    take([&](const V3& x) { return (at(0) - at(1)).normalized().dot(x - at(0)); });
+  } else if (kept.size() == 3) {
     const double side = left_of(at(0), at(1), at(2)) > 0 ? 1 : -1;
     take([&](const V3& x) { return -std::min({side * left_of(at(0), at(1), x), side * left_of(at(1), at(2), x), side * left_of(at(2), at(0), x)}); });
   }

@@ -211,6 +211,17 @@ TEST(HullContacts, of_many_keep_those_that_reach_farthest) {
   EXPECT_GT(four, 450);
 }
 
+TEST(HullContacts, on_an_edge_are_its_two_ends) {
+  Points edge;
+  for (int i = 0; i < 9; ++i) edge.emplace_back(0.1 * (i < 5 ? i : i - 9), 0, 0);
+  const std::vector<ContactPoint> found = on_ground(hull_shape(edge), {Matrix3<double>::Identity(), V3(0, 0, 0)}, 1e-3, 0);
+  ASSERT_EQ(found.size(), 3u);  // the first of the deepest, and the ends
+  double length = 0;
+  for (const ContactPoint& a : found)
+    for (const ContactPoint& b : found) length = std::max(length, (a.point - b.point).norm());
+  EXPECT_NEAR(length, 0.8, 30 * eps);
+}
+
 TEST(HullContacts, do_not_flicker_under_rounding) {
   Points drum;
   for (int i = 0; i < 32; ++i)
@@ -262,7 +273,7 @@ TEST(ZeroSize, gives_each_point_once) {
   EXPECT_EQ(count(Shape::Kind::box, {0.1, 0.2, 0}), 4u);
   EXPECT_EQ(count(Shape::Kind::box, {0.1, 0, 0}), 2u);
   EXPECT_EQ(count(Shape::Kind::cylinder, {0.1, 0, 0}), 4u);
-  EXPECT_EQ(count(Shape::Kind::cylinder, {0, 1e-4, 0}), 1u);
+  EXPECT_EQ(count(Shape::Kind::cylinder, {0, 1e-4, 0}), 2u);
   for (const double turn : {0.0, M_PI}) {  // a plate thinner than the margin, either side up: its lower corners
     const Pose<double> flat{Eigen::AngleAxisd(turn, V3::UnitX()).toRotationMatrix().array().round(), V3(0, 0, 4e-4)};
     const auto plate = on_ground({Shape::Kind::box, {0.1, 0.2, 1e-4}, {}, -1, {}}, flat, 1e-3, 0);
