@@ -1,6 +1,7 @@
 #include "algorithms/kkt_elimination.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "algorithms/ldlt_pivoted.h"
 
@@ -59,7 +60,45 @@ Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& dampin
   factored_ = {};
   for (const Index r : dependent_)  // a damped row never depends: this arithmetic cannot tell
     if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {Status::lost_pivot, r};
+  trust_ = trust_in_factor();
   return {};  // apply is defined all the same; solve reports the lost pivot
+}
+
+// t, when it is at least a half
+template <class T, Dependent policy> double KktEliminationWith<T, policy>::trust_in_factor() {
+  if (refinement_.invertible().ok() || !factored_.ok()) return 0;  // another bound, or no answer
+  if (ScalarTraits<T>::exact) return 1;
+  T trace(0);
+  for (Index c = 0; c < rank_; ++c) {  // ‖D^(−½) L⁻¹ e_c‖²
+    for (Index k = c; k < rank_; ++k) unit_[k] = T(k == c ? 1 : 0);
+    T entry(0);
+    for (Index k = c; k < rank_; ++k) {
+      const T* const column = factor_.data() + k * this->size();
+      entry += unit_[k] * unit_[k] / column[k];
+      for (Index r = k + 1; r < rank_; ++r) unit_[r] -= column[r] * unit_[k];
+    }
+    trace += entry * (hard_rows_.size(order_[c]) + (A_(order_[c], order_[c]) - A0_(order_[c], order_[c])));
+  }
+  std::fill(unit_.begin(), unit_.end(), T(0));
+  const double k = static_cast<double>(rank_);
+  const double trust = 1 - std::sqrt(k) * (k + 30) * unit_roundoff<T> * std::sqrt(static_cast<double>(trace));
+  return trust >= 0.5 ? trust : 0;
+}
+
+// ‖D^(−½) L⁻¹ r₂‖² / t² of the rows not left out; none when that is not known, or underflows
+template <class T, Dependent policy>
+std::optional<T> KktEliminationWith<T, policy>::bound_at_rows(const T* r2, T* work) const {
+  if (!(trust_ > 0)) return std::nullopt;
+  for (Index k = 0; k < rank_; ++k) work[k] = r2[order_[k]];
+  const bool all_zero = std::all_of(work, work + rank_, [](const T& x) { return x == T(0); });
+  T square(0);
+  for (Index k = 0; k < rank_; ++k) {
+    const T* const column = factor_.data() + k * this->size();
+    square += work[k] * work[k] / column[k];
+    for (Index r = k + 1; r < rank_; ++r) work[r] -= column[r] * work[k];
+  }
+  if (square == T(0) && !all_zero) return std::nullopt;
+  return square / T(trust_ * trust_);
 }
 
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor_by_rows() {
@@ -142,7 +181,9 @@ template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   if (!undamped_.ok()) return undamped_;
   if (!factored_.ok()) return factored_;
-  const Report report = refinement_.solve(a, f, wanted, {max_steps}, [this](auto... args) { solve_kkt(args...); }, workspace);
+  const Report report = refinement_.solve(
+      a, f, wanted, {max_steps}, [this](auto... args) { solve_kkt(args...); }, workspace, nullptr,
+      [this](const T* r2, T* work) { return bound_at_rows(r2, work); });
   const Report consistent = check_dependent(a, f);
   return consistent.ok() ? report : consistent;
 }

@@ -11,7 +11,11 @@
 //                              30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of hard_rows.h: as far as a row
 //                              that was called dependent can be off, and the rounding of its product.
 //            dense_refined     reports lost_pivot.
-// Cost     update: m sweeps of the factor of M, m³/3 or that of hard_rows.h; solve: per step 2 m² + 4 sweeps + a residual.
+// Bound    on r₂ᵀA⁻¹r₂ of the rows not left out, where a row is hard: L D Lᵀ = (Y + E)(Y + E)ᵀ, A = Y Yᵀ, |E_r| ≤ (k + 30) eps s_r,
+//          s_r² = B_r + R⁻¹_rr, k rows. The singular values of Y + E, its rows divided by s_r, are at least 1/√τ with the trace
+//          τ = Σ s_r² ((L D Lᵀ)⁻¹)_rr; those of Y at least t times that, t = 1 − √k (k + 30) eps √τ, and
+//          r₂ᵀA⁻¹r₂ ≤ ‖D^(−½) L⁻¹ r₂‖² / t². None when t < ½. Rigorous up to the rounding of M's factor, for which the 30 stands.
+// Cost     update: m sweeps of the factor of M, m³/3 or that of hard_rows.h and m³/3 for τ; solve: per step 2 m² + 4 sweeps + a residual.
 // Workspace  refinement's + 2 m.
 // Error    refined.
 // Source   paper, section II; refinement.h.
@@ -27,7 +31,7 @@ enum class Dependent : std::uint8_t { left_out, refused };
 
 template <class T, Dependent policy> class KktEliminationWith : public ColumnByColumn<T> {
  public:
-  static constexpr int max_steps = 5;
+  static constexpr int max_steps = 20;  // the last rung: it takes what it needs
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
   /// The elimination alone: M d_nu − Jᵀd_lambda = r1, J d_nu + R⁻¹d_lambda = r2 on the rows not left out. Shapes n, m, n, m;
   /// `work` as for solve.
@@ -47,6 +51,8 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   Index factor_by_pivots();
   void solve_multipliers(const T* right, T* lambda, T* work) const;
   [[nodiscard]] Report check_dependent(const T* a, const T* f) const;
+  [[nodiscard]] double trust_in_factor();
+  [[nodiscard]] std::optional<T> bound_at_rows(const T* r2, T* work) const;
 
   Refinement<T> refinement_;
   BlockDiagonal<T> damping_;      // R⁻¹
@@ -56,6 +62,7 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   std::vector<char> hard_;        // per row: R⁻¹_rr = 0
   std::vector<Index> order_, dependent_;
   Index rank_ = 0;
+  double trust_ = 0;              // t; 0: no bound
   std::unique_ptr<Workspace<T>> sweep_work_;  // of the sweeps that form A
   Report undamped_, factored_;
 };

@@ -22,6 +22,10 @@ std::vector<std::pair<Index, Index>> wide_constraints(const Structure& s) {
 template <class T> void Ladder<T>::do_analyze() {
   const Structure& s = *this->structure();
   rungs_.clear();
+  of_soft_rows_.clear();
+  of_hard_rows_.clear();
+  dense_ = nullptr;
+  hard_ = false;
   workspace_ = 0;
   for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
     const OperatorRow& row = find_operator(name);
@@ -29,7 +33,11 @@ template <class T> void Ladder<T>::do_analyze() {
     Rung& rung = rungs_.emplace_back(row, row.make<T>());
     rung.op->analyze(this->structure());
     workspace_ = std::max(workspace_, rung.op->workspace());
+    of_soft_rows_.push_back(&rung);
+    if (row.zero_damping) of_hard_rows_.push_back(&rung);
+    if (row.decides_rank) dense_ = &rung;
   }
+  if (dense_ != nullptr && s.rows <= first_dense_rows) std::rotate(of_hard_rows_.begin(), of_hard_rows_.end() - 1, of_hard_rows_.end());
   first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
   problem_ = Problem<T>(this->structure());
   plain_.diagonal.assign(static_cast<std::size_t>(s.rows), T(0));
@@ -75,6 +83,10 @@ template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const 
   return first_usable();
 }
 
+template <class T> const std::vector<Index>& Ladder<T>::dependent_rows() const {
+  return hard_ && dense_ != nullptr && prepare(*dense_).ok() ? dense_->op->dependent_rows() : Operator<T>::dependent_rows();
+}
+
 template <class T> Report Ladder<T>::do_update_damping(const Damping<T>& damping) {
   keep(damping);
   for (Rung& rung : rungs_)
@@ -84,9 +96,11 @@ template <class T> Report Ladder<T>::do_update_damping(const Damping<T>& damping
 
 // The first rung that can be used, factored; what the first says when none can.
 template <class T> Report Ladder<T>::first_usable() {
+  static_cast<void>(prepare(rungs_.front()));  // it keeps the numbers
+  hard_ = !first_->invertible().ok();
   Report first;
-  for (Rung& rung : rungs_) {
-    const Report report = prepare(rung);
+  for (Rung* const rung : order()) {
+    const Report report = prepare(*rung);
     if (report.ok()) return report;
     if (first.ok() || first.status == Status::zero_damping) first = report;
   }
@@ -105,6 +119,32 @@ template <class T> Report Ladder<T>::prepare(Rung& rung) const {
   return rung.updated;
 }
 
+namespace {
+bool has_answer(const Report& r) { return r.ok() || r.status == Status::not_converged; }
+
+/// What a report is worth when no rung is ok: a contradiction, an iterate, a reason, nothing.
+int worth(const Report& r) {
+  switch (r.status) {
+    case Status::inconsistent: return 3;
+    case Status::not_converged: return 2;
+    case Status::zero_damping: return 1;
+    case Status::not_supported: return 0;
+    default: return has_answer(r) ? 4 : 1;
+  }
+}
+
+/// Smaller, −1 and NaN being larger than all others.
+bool smaller(double x, double y) { return x >= 0 && !(x >= y && y >= 0); }
+
+bool better(const Report& r, const Report& than) {
+  if (worth(r) != worth(than)) return worth(r) > worth(than);
+  if (r.status == Status::not_converged)
+    return r.error_bound >= 0 || than.error_bound >= 0 ? smaller(r.error_bound, than.error_bound)
+                                                       : smaller(r.error_estimate, than.error_estimate);
+  return than.status == Status::zero_damping && r.status != Status::zero_damping;
+}
+}  // namespace
+
 template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   const Index m = this->size();
   const Eigen::Map<const MatrixX<T>> right(a, m, 1);
@@ -112,19 +152,19 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
   Workspace<T> rest(workspace + padded(m), workspace_);
   Report best{Status::not_supported};
   int steps = 0, tried = 0;
-  for (Rung& rung : rungs_) {
+  for (Rung* const rung : order()) {
     if (best.status == Status::not_converged && steps >= wanted.steps) break;
-    Report report = prepare(rung);
-    if (report.ok()) report = rung.op->solve(right, answer, {wanted.error, wanted.steps - steps}, rest);
-    report.rung = rung.row->name;
+    // who has no bound must show all digits where another one sees a contradiction
+    const double accuracy = best.status == Status::inconsistent ? 0 : wanted.error;
+    Report report = prepare(*rung);
+    if (report.ok()) report = rung->op->solve(right, answer, {accuracy, wanted.steps - steps}, rest);
+    report.rung = rung->row->name;
     report.rungs_tried = ++tried;
     report.iterations = steps += report.iterations;
-    const bool has_answer = report.ok() || report.status == Status::not_converged;
-    const bool better = best.status != Status::not_converged ||
-                        (report.error_bound >= 0 && !(report.error_bound >= best.error_bound));
-    if (report.ok() || (has_answer && better)) std::copy_n(workspace, m, f);
-    if (report.ok()) return report;
-    if (has_answer ? better : best.status == Status::not_supported || best.status == Status::zero_damping) best = report;
+    if (!better(report, best)) continue;
+    if (has_answer(report)) std::copy_n(workspace, m, f);
+    best = report;
+    if (best.ok()) break;
   }
   return best;
 }

@@ -1,15 +1,19 @@
 // ladder: ask for an accuracy, pay only for it. The default inverse.
 //
-// What     f = A⁻¹ a to a wanted accuracy, by the first of these rungs whose certificate reaches it:
-//            lcaba_refined     without a refinement step where its first answer is good enough
-//            lcaba_qr          where that stagnates or loses a pivot
-//            proximal          where a row is hard (R⁻¹ = 0); no certificate: judged by the last correction
-//            kkt_elimination   at last, for up to max_dense_rows rows
-// How      update factors the first rung only, which keeps the numbers; another rung is factored when a solve first climbs to
-//          it (a lock lets one thread do it, the others wait). Report::rung names who answered, rungs_tried
+// What     f = A⁻¹ a to a wanted accuracy, by the first of these rungs that reaches it:
+//            R⁻¹ > 0                  lcaba_refined     without a refinement step where its first answer is good enough
+//                                     lcaba_qr          where that stagnates or loses a pivot
+//                                     proximal
+//                                     kkt_elimination   up to max_dense_rows rows
+//            a row is hard (R⁻¹ = 0)  kkt_elimination   up to first_dense_rows rows: a bound, and the dependent rows by name
+//                                     proximal          no bound: judged by the last correction
+//                                     kkt_elimination   up to max_dense_rows rows
+// How      update factors the first rung only, the numbers are kept by lcaba_refined; another rung is factored when a solve first
+//          climbs to it (a lock lets one thread do it, the others wait). Report::rung names who answered, rungs_tried
 //          and iterations what it took; Accuracy::steps counts over all rungs.
-// Singular when no rung answers, the report is that of the answer with the smallest bound, not_converged, or of the first
-//          rung that says why there is none.
+// Singular when no rung answers, `inconsistent` of any rung is the report, whatever iterate another one has. Otherwise that of the
+//          best answer, not_converged: the smallest bound, or where nobody has one the smallest last correction; or of the
+//          first rung that says why there is none. dependent_rows() are those of kkt_elimination, which it may factor first.
 // Cost     that of the rungs climbed; memory that of all of them.
 // Error    refined.
 #pragma once
@@ -24,7 +28,8 @@ namespace delassus {
 
 template <class T> class Ladder : public ColumnByColumn<T> {
  public:
-  static constexpr Index max_dense_rows = 1000;
+  static constexpr Index max_dense_rows = 1000, first_dense_rows = 150;
+  [[nodiscard]] const std::vector<Index>& dependent_rows() const override;
 
  protected:
   void do_analyze() override;
@@ -49,7 +54,12 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   /// Brings a rung up to the numbers of the last update.
   Report prepare(Rung& rung) const;
 
+  [[nodiscard]] const std::vector<Rung*>& order() const { return hard_ ? of_hard_rows_ : of_soft_rows_; }
+
   mutable std::deque<Rung> rungs_;
+  std::vector<Rung*> of_soft_rows_, of_hard_rows_;
+  Rung* dense_ = nullptr;              // kkt_elimination, or none
+  bool hard_ = false;                  // R⁻¹ has no inverse
   Index workspace_ = 0;                // the most a rung needs
   const LcabaRefined<T>* first_ = nullptr;
   mutable std::mutex preparing_;

@@ -23,6 +23,8 @@ template <class T> class LcabaRefined : public ColumnByColumn<T> {
   Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const;
   /// What update was given; `to` has the structure and the sizes.
   void numbers(Problem<T>& to) const { refinement_.numbers(to); }
+  /// zero_damping where the last R⁻¹ has no inverse.
+  [[nodiscard]] const Report& invertible() const { return refinement_.invertible(); }
 
  protected:
   void do_analyze() override;

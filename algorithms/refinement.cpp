@@ -86,14 +86,20 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   return now;
 }
 
-// B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
-template <class T> double Refinement<T>::bound(Buffers& b, T energy) const {
+// r₂ᵀR r₂
+template <class T> std::optional<T> Refinement<T>::soft_rows(Buffers& b) const {
   weights_.multiply(b.r2, b.scratch);
-  const T at_rows = dot(b.r2, b.scratch, b.m), total = dot(b.f, b.a, b.m);
-  const T squared = at_rows + energy;
-  const double bound = std::sqrt(magnitude(squared)), s = static_cast<double>(total);
+  return dot(b.r2, b.scratch, b.m);
+}
+
+// B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
+template <class T> double Refinement<T>::bound(const Buffers& b, const T& motion, const T& rows) const {
+  const double of_motion = std::sqrt(magnitude(motion)), of_rows = std::sqrt(magnitude(rows));
+  const double bound = invertible_.ok() ? std::sqrt(magnitude(T(motion + rows))) : of_motion + of_rows;
+  const double s = static_cast<double>(dot(b.f, b.a, b.m));
   if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
-  if (bound == 0 && largest_magnitude(b.r1, b.n) + largest_magnitude(b.r2, b.m) > 0)  // squares underflow
+  const double at_rows = invertible_.ok() ? largest_magnitude(b.r2, b.m) : 0;
+  if (bound == 0 && largest_magnitude(b.r1, b.n) + at_rows > 0)  // squares underflow
     return std::numeric_limits<double>::infinity();
   const double t = relative(bound, std::sqrt(s));
   return t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<T>;

@@ -11,14 +11,18 @@
 //          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that is below eps; where rows are
 //          hard, when moreover the correction itself is below 4 eps; those of a patient correction, which is fast in most
 //          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
-//          are divergence: not_converged.
+//          are divergence: not_converged. So is the last step allowed, unless the last correction is below 4 eps and no
+//          certificate above 8 eps: then no step would add a digit.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
 //          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
-//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0 or B² underflows. There is none where R⁻¹ has a zero.
+//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0 or B² underflows.
 //          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
 //          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
+// Hard rows, R⁻¹ = 0: from (K), ‖δν‖²_M + ‖δλ‖²_{R⁻¹} ≤ r₁ᵀM⁻¹r₁ + r₂ᵀA⁻¹r₂ and ‖δλ‖_A ≤ B = √(r₁ᵀM⁻¹r₁) + √(r₂ᵀA⁻¹r₂). Whoever
+//          has a factor of A gives a bound on r₂ᵀA⁻¹r₂ (kkt_elimination.h). Nobody else has a bound: error_bound is −1, and
+//          an accuracy is reached when what further corrections would bring, judged by the last one, is below it.
 //          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.
 // Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual in T and half a sweep.
 // Workspace  4 n + 7 m, the residual's or the correction's.
@@ -28,6 +32,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "algorithms/columns.h"
 #include "algorithms/factor.h"
@@ -58,6 +63,9 @@ template <class T> class Refinement {
   /// The factor of M, every joint active, after factor_mass.
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
+  struct NoBound {
+    std::optional<T> operator()(const T*, T*) const { return std::nullopt; }
+  };
   struct Steps {
     int most;
     bool patient = false;
@@ -65,18 +73,20 @@ template <class T> class Refinement {
   /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
-  /// accuracy was not reached, with the iterate it came to; not_finite; lost_pivot of M.
-  template <class Correct>
-  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr) const {
+  /// accuracy was not reached, with the iterate it came to; not_finite; lost_pivot of M. `at_rows(r2, scratch)`, asked where R⁻¹
+  /// has a zero, is a bound on r₂ᵀA⁻¹r₂, or none; scratch is m.
+  template <class Correct, class AtRows = NoBound>
+  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr,
+               const AtRows& at_rows = {}) const {
     if (std::isfinite(wanted.error))
       if (const Report factored = factor_mass(); !factored.ok()) return factored;
     const auto energy = [this](const T* tau, T* rest) { return factor_M_.energy(tau, rest); };
-    return solve_with(a, f, wanted, steps, correct, energy, work, nu);
+    return solve_with(a, f, wanted, steps, correct, energy, work, nu, at_rows);
   }
   /// The same with `energy(τ, work)` = τᵀM⁻¹τ.
-  template <class Correct, class Energy>
+  template <class Correct, class Energy, class AtRows = NoBound>
   Report solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
-                    T* nu = nullptr) const;
+                    T* nu = nullptr, const AtRows& at_rows = {}) const;
 
   [[nodiscard]] Index workspace(Index of_correction) const;
   [[nodiscard]] Index bytes() const;
@@ -89,12 +99,22 @@ template <class T> class Refinement {
     double patient = 1;   // the same if corrections are slow in directions that this one does not show
     double energy = 1, motion = 0, force = 0;  // of the last one: in the energy norm, max|δν|, max|δλ|
   };
+  /// The certificate says so; where there is none, the last correction.
+  static bool enough(const Report& r, const Progress& now, double wanted) {
+    return r.error_bound >= 0 ? r.error_bound <= wanted : r.iterations > 0 && wanted > 0 && now.patient <= wanted;
+  }
+  /// Nothing left to gain.
+  static bool at_rounding(const Report& r) {
+    return r.error_bound <= 8 * unit_roundoff<T> && r.error_estimate >= 0 && r.error_estimate <= 4 * unit_roundoff<T>;
+  }
   Progress start(Buffers& b) const;
   Progress advance(Buffers& b, const Progress& before) const;
-  template <class Energy> double certify(Buffers& b, const Energy& energy) const {
-    return invertible_.ok() ? bound(b, energy(b.r1, b.rest)) : -1;
+  template <class Energy, class AtRows> double certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
+    const std::optional<T> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.r2, b.scratch);
+    return rows ? bound(b, energy(b.r1, b.rest), *rows) : -1;
   }
-  double bound(Buffers& b, T energy) const;
+  std::optional<T> soft_rows(Buffers& b) const;
+  double bound(const Buffers& b, const T& motion, const T& rows) const;
 
   std::shared_ptr<const Structure> structure_;
   KktResidual<T> residual_;
@@ -132,9 +152,9 @@ template <class T> struct Refinement<T>::Buffers {
 };
 
 template <class T>
-template <class Correct, class Energy>
+template <class Correct, class Energy, class AtRows>
 Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
-                                 T* work, T* nu) const {
+                                 T* work, T* nu, const AtRows& at_rows) const {
   Buffers b(*structure_, a, work);
   correct(nullptr, b.r2, b.d_nu, b.d_lambda, b.rest);
   Progress now = start(b), before = now;
@@ -144,12 +164,12 @@ Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps,
     // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
     if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
     else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
-    if (done || wanted.error > 0) report.error_bound = certify(b, energy);
-    if (done || (report.error_bound >= 0 && report.error_bound <= wanted.error)) break;
+    if (done || wanted.error > 0) report.error_bound = certify(b, energy, at_rows);
+    if (done || enough(report, now, wanted.error)) break;
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
     if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
-      report.error_bound = certify(b, energy);
-      report.status = Status::not_converged;
+      report.error_bound = certify(b, energy, at_rows);
+      if (wanted.error > 0 || !at_rounding(report)) report.status = Status::not_converged;
       break;
     }
     correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);

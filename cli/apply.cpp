@@ -8,6 +8,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/names.h"
 #include "property_tests/options.h"
 
 namespace delassus::cli {
@@ -15,7 +16,7 @@ namespace delassus::cli {
 namespace {
 
 struct Options {
-  std::string scene, op, input;
+  std::string scene, op, input, rhs = "ones";
   bool solve = false, as_json = false;
   double damping = 0, accuracy = 0;
   SceneOptions opening;
@@ -34,7 +35,25 @@ struct Answer {
   Report report;
   std::vector<Index> dependent = {};  ///< hard rows left out
   double cost = -1;  ///< operations of update and solve, over those of lcaba; −1: not counted
+  bool singular = false;  ///< M has no factor at this pose
 };
+
+/// What ones give: an acceleration that forces cause, so that dependent hard rows agree. Ones where M is singular.
+VectorX<double> reachable(const Problem<double>& problem, const Damping<double>& damping) {
+  const auto op = find_operator("aba_sweep").make<double>();
+  op->analyze(problem.structure);
+  const MatrixX<double> f = MatrixX<double>::Ones(op->size(), 1);
+  MatrixX<double> a = f;
+  if (!op->update(problem, damping).ok()) return a.col(0);
+  Workspace<double> workspace(op->workspace());
+  return (op->apply(f, a, workspace).ok() ? a : f).col(0);
+}
+
+bool mass_is_singular(const Problem<double>& problem, const Damping<double>& damping) {
+  const auto op = find_operator("aba_sweep").make<double>();
+  op->analyze(problem.structure);
+  return op->update(problem, damping).status == Status::lost_pivot;
+}
 
 Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>& input, bool solve, Accuracy wanted) {
   const Problem<double> problem = problem_of(scene);
@@ -47,6 +66,7 @@ Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>
   Report report = solve ? op->solve(in, out, wanted, workspace) : op->apply(in, out, workspace);
   if (report.ok() && !update.ok() && solve) report = update;
   Answer answer{out.col(0), report, op->dependent_rows()};
+  if (report.status == Status::lost_pivot) answer.singular = mass_is_singular(problem, scene.damping);
   if (!solve || !report.ok()) return answer;
   const std::int64_t spent = accuracy::operations(row, problem, scene.damping, input, wanted, report);
   const std::int64_t least = accuracy::operations(find_operator("lcaba"), problem, scene.damping, input, Accuracy::full(), {});
@@ -54,22 +74,23 @@ Answer compute(const OperatorRow& row, const Scene& scene, const VectorX<double>
   return answer;
 }
 
-void print_text(const Options& o, const VectorX<double>& input, const Answer& answer) {
+void print_text(const Options& o, const Model& model, const VectorX<double>& input, const Answer& answer) {
   std::printf("%s  %s  %s\n%6s  %24s  %24s\n", o.scene.c_str(), o.op.c_str(), o.solve ? "f = A⁻¹ a" : "a = A f", "row",
               "input", "output");
   for (Index i = 0; i < input.size(); ++i)
     std::printf("%6lld  %24.17g  %24.17g\n", static_cast<long long>(i), input[i], answer.output[i]);
   const Report& r = answer.report;
   std::printf("status %s", std::string(name(r.status)).c_str());
+  if (const std::string at = place(model, find_operator(o.op), r, answer.singular); !at.empty()) std::printf(" %s", at.c_str());
   if (!r.rung.empty()) std::printf(", by %s (rungs tried: %d)", std::string(r.rung).c_str(), r.rungs_tried);
   if (r.iterations > 0) std::printf(", steps: %d", r.iterations);
   if (r.error_bound >= 0) std::printf(", error at most %.1e (relative, energy norm)", r.error_bound);
+  else if (r.error_estimate >= 0) std::printf(", no bound");
   if (r.error_estimate >= 0) std::printf(", last correction %.1e", r.error_estimate);
   std::printf("\n");
   if (!answer.dependent.empty()) {
-    std::printf("hard rows that depend on the others:");
-    for (const Index row : answer.dependent) std::printf(" %lld", static_cast<long long>(row));
-    std::printf("\n");
+    std::printf("%zu of %lld rows are hard and depend on the others:\n", answer.dependent.size(), static_cast<long long>(input.size()));
+    for (const Index row : answer.dependent) std::printf("%6lld  %s\n", static_cast<long long>(row), row_name(model, row).c_str());
   }
   if (answer.cost > 0) std::printf("update and solve: %.2f times the operations of lcaba\n", answer.cost);
 }
@@ -80,8 +101,9 @@ int apply(const Options& o, bool has_damping) {
   require_capability(row, o.solve);
   const auto structure = structure_of(scene.model);
   const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
-  const VectorX<double> input =
-      o.input.empty() ? VectorX<double>::Ones(structure->rows) : read_vector(o.input, structure->rows, meaning);
+  const VectorX<double> input = !o.input.empty() ? read_vector(o.input, structure->rows, meaning)
+                                : o.rhs == "consistent" ? reachable(problem_of(scene), scene.damping)
+                                                        : VectorX<double>::Ones(structure->rows);
   const Answer answer = compute(row, scene, input, o.solve, Accuracy{o.accuracy});
   if (o.as_json) {
     json j = {{"scene", scene.name}, {"op", row.name}, {"function", o.solve ? "solve" : "apply"},
@@ -89,12 +111,16 @@ int apply(const Options& o, bool has_damping) {
               {"input", std::vector<double>(input.begin(), input.end())},
               {"output", std::vector<double>(answer.output.begin(), answer.output.end())},
               {"report", report_json(answer.report)}, {"dependent_rows", answer.dependent},
-              {"warnings", warnings_json(scene)}};
+              {"dependent_row_names", json::array()}, {"warnings", warnings_json(scene)}};
+    for (const Index dependent : answer.dependent) j["dependent_row_names"].push_back(row_name(scene.model, dependent));
+    const std::string at = place(scene.model, row, answer.report, answer.singular);
+    j["place"] = at.empty() ? json(nullptr) : json(at);
+    if (answer.report.where >= 0) j["report"]["where_is"] = names_row(row, answer.report, answer.singular) ? "row" : "degree of freedom";
     if (o.solve) j["operations_over_lcaba"] = answer.cost > 0 ? json(answer.cost) : json(nullptr);
     if (!scene.damping.blocks.empty()) j["damping_blocks"] = damping_blocks_json(scene.damping);
     std::printf("%s\n", j.dump().c_str());
   } else {
-    print_text(o, input, answer);
+    print_text(o, scene.model, input, answer);
   }
   return answer.report.ok() ? good : law_broken;
 }
@@ -114,9 +140,11 @@ void add_apply(CLI::App& app, Run& run) {
         const double x = std::strtod(text.c_str(), &end);
         return !text.empty() && *end == 0 && x >= 0 ? std::string() : "'" + text + "' is not a number ≥ 0 (accepted: 0 … inf)";
       });
-  c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, ones");
+  CLI::Option* input = c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, see --rhs");
+  c->add_option("--rhs", o->rhs, "without --input: ones; consistent: A times ones, which dependent hard rows do not contradict")
+      ->check(CLI::IsMember({"ones", "consistent"}))->excludes(input)->capture_default_str();
   CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's")->check(options::at_least(0, "1/kg"));
-  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, warnings, with --solve operations_over_lcaba}");
+  c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, dependent_row_names, place, warnings, with --solve operations_over_lcaba}");
   add_scene_options(*c, o->opening);
   c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");
   c->callback([=, &run] { run = [=] { return apply(*o, damping->count() > 0); }; });

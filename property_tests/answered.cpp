@@ -55,11 +55,20 @@ double law_ratio(const OperatorRow& row, const Question& q, const MatrixX<double
   return judge(error, bound, unit_roundoff<double>, "").ratio;
 }
 
+/// A status says what the certificate says: all digits, or not half of them.
+std::string contradiction(const Report& r) {
+  const double eps = unit_roundoff<double>;
+  const bool nothing_left = r.error_bound >= 0 && r.error_bound <= 8 * eps && r.error_estimate >= 0 && r.error_estimate <= 4 * eps;
+  if (r.status == Status::not_converged && nothing_left) return "not_converged beside a bound and a correction of rounding";
+  return r.ok() && r.error_bound > std::sqrt(eps) ? "ok beside a bound above the square root of eps" : "";
+}
+
 std::string broken_promise(const OperatorRow& row, const Question& q, const Answered& given, const MatrixX<double>& f) {
   const Report& r = given.report;
   const bool answer = r.ok() || r.status == Status::not_converged;
   if (!answer) return f.array().isNaN().all() ? "" : "numbers in an answer called " + std::string(name(r.status));
   if (r.ok() && !given.finite) return "NaN in an answer called ok";
+  if (const std::string said = contradiction(r); !said.empty()) return said;
   if (!q.truth) return "";
   const double error = given.errors.energy;
   if (r.error_bound >= 0 && !(q.truth->violation(error, r.error_bound, q.truth->rounding(q.lambda)) < pass_below))

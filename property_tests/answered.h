@@ -26,6 +26,7 @@ struct Answered {
 ///   an answer called ok or not_converged is no further off than its certificate says;
 ///   one called ok holds no NaN and is within the bound of its error class (none beyond the size of the dense bounds), taken
 ///   in units in which masses and a are about one, where it neither overflows nor underflows;
+///   not_converged is never said beside a bound within 8 eps and a correction within 4, ok never beside one above √eps;
 ///   any other holds no numbers.
 [[nodiscard]] Answered answered(const OperatorRow& row, const Question& question);
 

@@ -60,15 +60,16 @@ class Model {
   /// refinement.h, in the order of its paragraphs «How» and «Certificate».
   [[nodiscard]] Expected expected(const Asked& asked) const {
     Expected e{.force = asked.force, .motion = asked.motion};
-    double size = 1, before = 1, left = 1;
+    double size = 1, before = 1, left = 1, patient = 1;
     double motion = 1 - asked.motion, force = 1 - asked.force, energy = 1;  // of the last correction
     while (std::isfinite(asked.wanted)) {
       const bool done = left <= unit_roundoff<double>;
       if (done || asked.wanted > 0) e.bound = bound(e);
-      if (done || (e.bound >= 0 && e.bound <= asked.wanted)) break;
+      if (done || (e.bound >= 0 ? e.bound <= asked.wanted : e.iterations > 0 && asked.wanted > 0 && patient <= asked.wanted)) break;
       if (e.iterations == asked.most || (e.iterations >= 2 && size >= 0.5 && before >= 0.5)) {
         e.bound = bound(e);
-        e.status = Status::not_converged;
+        const bool at_rounding = e.bound <= 8 * unit_roundoff<double> && e.estimate >= 0 && e.estimate <= 4 * unit_roundoff<double>;
+        if (asked.wanted > 0 || !at_rounding) e.status = Status::not_converged;
         break;
       }
       const Vector d_nu = nu_ * Quad((1 - asked.motion) * e.motion), d_lambda = lambda_ * Quad((1 - asked.force) * e.force);
@@ -83,7 +84,8 @@ class Model {
       const auto shrunk = [](double to, double from) { return to == 0 ? 0 : std::min(1.0, to / from); };
       const double rho = std::max({shrunk(largest(d_nu), motion * largest(nu_)), shrunk(largest(d_lambda), force * largest(lambda_)), shrunk(now, energy)});
       const double gained = std::max(at_stake / (of_force * largest(lambda_)), size <= 4 * unit_roundoff<double> ? 0 : size);
-      left = asked.patient ? size * std::max(1.0, rho / (1 - rho)) : gained * rho / (1 - rho);
+      patient = size == 0 ? 0 : size * std::max(1.0, rho / (1 - rho));
+      left = asked.patient ? patient : gained * rho / (1 - rho);
       if (!asked.patient && !R_inverse_.regular() && size > 4 * unit_roundoff<double>) left = std::max(left, size);
       motion = largest(nu_) == 0 ? 0 : largest(d_nu) / largest(nu_);
       force = largest(d_lambda) / largest(lambda_);

@@ -1,6 +1,7 @@
 #include "property_tests/truth.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "algorithms/delassus.h"
@@ -115,7 +116,9 @@ double Truth::rounding(const VectorX<Quad>& lambda) const {
 double Truth::violation(double error, double bound, double rounding) const {
   if (error <= bound + rounding) return 0;
   if (!dense_ || !(bound > 0)) return std::numeric_limits<double>::infinity();
-  const double condition = std::max(scaled_condition(dense_->M), scaled_condition(dense_->R_inverse));
+  const bool damped = reference::PivotedLdlt<Quad>(dense_->R_inverse).regular();
+  const double of_rows = damped ? scaled_condition(dense_->R_inverse) : std::sqrt(scaled_condition(A_));
+  const double condition = std::max(scaled_condition(dense_->M), of_rows);
   return (error - bound - rounding) / (unit_roundoff<double> * condition * bound);
 }
 

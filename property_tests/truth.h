@@ -9,7 +9,8 @@
 //   ‖e‖_A ≤ √(|e|ᵀ|A||e|)                                      `rounding`
 // which is more than eps ‖λ‖_A where forces cancel: no answer in double can be expected to be better.
 // B² itself is evaluated with the factors of M and R⁻¹, to a relative eps κ, κ the larger condition number of the two when
-// brought to unit diagonal (Higham, section 10.1): `violation` counts an excess over the bound in units of that.
+// brought to unit diagonal (Higham, section 10.1): `violation` counts an excess over the bound in units of that. Where a row is
+// hard, with √κ of A in the place of R⁻¹: the factor is one of rows within eps of those of A (hard_rows.h).
 #pragma once
 
 #include <optional>

@@ -1,0 +1,22 @@
+// Rows and degrees of freedom in the words of the scene, and what a report says in them.
+#pragma once
+
+#include <string>
+
+#include "algorithms/delassus.h"
+#include "algorithms/model.h"
+
+namespace delassus::cli {
+
+/// "weld r/l6 - world, row 5 of 6"; the constraint's own name where it has one. Rows count from 1 within a constraint.
+[[nodiscard]] std::string row_name(const Model& model, Index row);
+/// "r/j1"; "r/base, degree of freedom 3 of 6" of a joint with several.
+[[nodiscard]] std::string joint_name(const Model& model, Index dof);
+
+/// What `where` of a report of this operator is: a row, or a degree of freedom. `singular`: M itself has no factor at this pose.
+/// Of lost_pivot it is a row where A is formed and lost, a degree of freedom where M is or M + JᵀRJ.
+[[nodiscard]] bool names_row(const OperatorRow& row, const Report& report, bool singular);
+/// "at joint r/j1 (…)" or "at row 4 (weld r/l6 - world, row 5 of 6)"; empty where the report names nothing.
+[[nodiscard]] std::string place(const Model& model, const OperatorRow& row, const Report& report, bool singular);
+
+}  // namespace delassus::cli
