@@ -1,5 +1,6 @@
 #include "models/scene.h"
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -63,10 +64,29 @@ Scene SceneLoader::run() {
   if (root_.has("contacts")) read_contacts(root_.at("contacts"));
   read_damping(root_);
   validate(scene_.model, path_);
+  check_finite();
   once(scene_.notes, [](const std::string& x) { return x; });
   once(scene_.warnings, [](const Warning& x) { return x.text; });
   scene_.robots = std::move(robots_);
   return std::move(scene_);
+}
+
+/// Lengths and masses that are numbers, but whose products are none.
+void SceneLoader::check_finite() const {
+  const Problem<double> p = kinematics(scene_.model, scene_.q);
+  double farthest = 1, inertia = 0;
+  for (const auto& S : p.S) farthest = std::max(farthest, S.cwiseAbs().maxCoeff());
+  const auto fail = [&](const std::string& element) {
+    throw ModelError(path_, element, "its numbers are so large that M or J overflows", "masses [kg] and lengths [m] whose products stay below 1.8e308");
+  };
+  for (std::size_t i = 0; i < p.H.size(); ++i) {
+    inertia += p.H[i].cwiseAbs().maxCoeff();
+    if (!std::isfinite(36 * inertia * farthest * farthest) || !p.H[i].allFinite()) fail(scene_.model.bodies[i].name);
+  }
+  for (const auto& e : p.structure->link_constraints)
+    for (const auto& end : e.links)
+      for (Index r = 0; r < e.rows; ++r)
+        if (!std::isfinite(6 * p.K[static_cast<std::size_t>(end.first + r)].cwiseAbs().sum() * farthest)) fail("row " + std::to_string(e.row + r));
 }
 
 Scene load_scene(const std::string& path, const SceneOptions& options) { return SceneLoader(path, Yaml::open(path), options).run(); }

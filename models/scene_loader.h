@@ -36,6 +36,7 @@ class SceneLoader {
   [[nodiscard]] RobotOptions robot_options(const Yaml& y, const std::string& name) const;
   void set_joints(const Robot& robot, const Yaml& joints);
   void set_mimics(const Robot& robot);
+  void check_finite() const;
   void check_ranges(const Robot& robot, const Yaml& y);
   void set_pose(Index body, const Pose<double>& pose);
   void grow_q();

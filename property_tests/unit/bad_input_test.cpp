@@ -75,7 +75,11 @@ TEST(BadUrdf, every_fault_is_named) {
       {"only an end", "</a>", {"root element"}},
       {"a declaration and an end", "<?xml version=\"1.0\"?></robot>", {"root element"}},
       {"a byte order mark", "\xef\xbb\xbf", {"XML"}},
-      {"zeros", std::string(7, '\0'), {"XML"}},
+      {"a zero byte", robot(good("a")) + std::string(1, '\0') + "<more/>", {"NUL"}},
+      {"a second root", robot(good("a")) + robot(good("b")), {"second root element", "line 3"}},
+      {"text behind the root", robot(good("a")) + "hello", {"broken XML", "line 3"}},
+      {"an attribute twice", robot("<link name=\"a\" name=\"b\"/>"), {"broken XML", "line 2"}},
+      {"zeros", std::string(7, '\0'), {"NUL"}},
       {"no XML", "hello", {"XML"}},
       {"broken XML", "<robot name=\"r\"><link name=\"a\">", {"broken XML"}},
       {"another root", "<sdf/>", {"\"sdf\""}},
@@ -160,6 +164,7 @@ TEST(BadScene, every_fault_is_named) {
   const std::string a = "boxes:\n  - {name: a, mass: 1, size: [1, 1, 1]}\n", b = "  - {name: b, mass: 1, size: [1, 1, 1], pose: {xyz: [3, 0, 0]}}\n";
   const std::string con = a + b + "constraints:\n  - ";
   write("tip.urdf", robot(good("a") + good("b") + good("c") + joint("j", "a", "b") + joint("k", "b", "c", "<mimic joint=\"j\"/>")));
+  write("far.urdf", robot(good("a") + link("b", "<inertial><origin xyz=\"1e160 0 0\"/><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>") + joint("j", "a", "b", "<axis xyz=\"0 0 1\"/>")));
   write("ball.urdf", robot(good("a") + good("b") + joint("j", "a", "b")));
   const std::string ball = "robots:\n  - {name: r, urdf: delassus_bad_ball.urdf";
   const std::string r = "robots:\n  - {name: r, urdf: delassus_bad_tip.urdf";
@@ -215,6 +220,8 @@ TEST(BadScene, every_fault_is_named) {
       {"contact without normal", a + b + "contacts:\n  - {of: a, to: b}\n", {"normal"}},
       {"contact with itself", a + "contacts:\n  - {of: a, to: a, normal: [0, 0, 1]}\n", {"one body"}},
       {"normal zero", a + "contacts:\n  - {of: a, normal: [0, 0, 0]}\n", {"direction"}},
+      {"huge lever", "robots:\n  - {name: r, urdf: delassus_bad_far.urdf, base: fixed}\n", {"r/b", "overflow"}},
+      {"a second document", a + "---\n" + a, {"second document"}},
       {"pose", a + "pose: maybe\n", {"maybe", "provisional"}}};
   for (const Case& c : cases) {
     const std::string message = complaint_of_scene(c.what, c.text);

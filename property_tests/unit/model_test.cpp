@@ -73,7 +73,9 @@ TEST(model, refuses_bodies_that_cannot_be) {
   expect_refusal(edited([](Body& b) { b.joint.lower = {1, 2}; }), "limits: 2 values");
   expect_refusal(edited([&](Body& b) { b.joint.upper = {nan}; }), "limits: nan");
   expect_refusal(edited([](Body& b) { b.joint.lower = {1}, b.joint.upper = {0}; }), "lower 1 above upper 0");
-  expect_refusal(edited([](Body& b) { b.shapes.resize(1); }), "shape 0 size: 0 m");
+  EXPECT_NO_THROW(edited([](Body& b) { b.shapes.resize(1); })()) << "a sphere of radius 0 is a point";
+  expect_refusal(edited([](Body& b) { b.shapes.resize(1), b.shapes[0].size[0] = -1; }), "shape 0 size: -1 m");
+  expect_refusal(edited([](Body& b) { b.shapes.resize(1), b.shapes[0].kind = Shape::Kind::box; }), "shape 0 size: 0 m");
   expect_refusal(edited([&](Body& b) { b.shapes.resize(1), b.shapes[0].size[0] = 1, b.shapes[0].friction = nan; }), "friction");
 }
 
@@ -157,6 +159,26 @@ Model wrist(const Vector3<double>& axis, const Vector3<double>& tip_axis, double
   b.joint.axis = tip_axis;
   m.add(b);
   return m;
+}
+
+TEST(regularity, semidefinite_inertias_need_a_lever_arm_and_indefinite_ones_a_positive_pivot) {
+  const auto arm = [](const Vector3<double>& com, const Vector3<double>& moments, JointType type = JointType::revolute) {
+    Body b = good_body("r/arm");
+    b.com = com;
+    b.inertia = moments.asDiagonal();
+    b.joint.type = type;
+    Model m;
+    m.add(b);
+    return m;
+  };
+  EXPECT_NO_THROW(validate(arm({0.5, 0, 0}, {0, 0, 0}), "f"));  // a point mass on a lever about z
+  expect_refusal([&] { validate(arm({0, 0, 0.5}, {0, 0, 0}), "f"); }, "r/arm: point mass of 1 kg");
+  EXPECT_NO_THROW(validate(arm({0, 0, 0}, {0, 0.1, 0.1}), "f"));  // a rod across the axis
+  expect_refusal([&] { validate(arm({0, 0, 0}, {0.1, 0.1, 0}), "f"); }, "M is singular");
+  expect_refusal([&] { validate(arm({0.5, 0, 0}, {0, 0.1, 0.1}, JointType::floating), "f"); }, "M is singular");
+  EXPECT_NO_THROW(validate(arm({0.5, 0, 0}, {1, 1, -0.2}), "f"));  // 0.25 − 0.2
+  expect_refusal([&] { validate(arm({0.5, 0, 0}, {1, 1, -0.3}), "f"); }, "M is indefinite");
+  expect_refusal([&] { validate(arm({0.5, 0, 0}, {1, 1, -0.2}, JointType::floating), "f"); }, "M is indefinite");
 }
 
 TEST(regularity, massless_bodies_need_armature_or_moved_inertia) {
