@@ -314,6 +314,8 @@ TEST(ContactLaws, the_points_kept_reach_farthest) {
     const std::vector<V3> all = overlap(b, 0, a, n);
     ASSERT_EQ(found.size(), std::min<std::size_t>(4, all.size())) << seed;
     more += all.size() > 4;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l) EXPECT_GT((found[k].point - found[l].point).norm(), 1e-9) << seed;
     // The reference face is the larger of the two.
     const auto reaches = [&](const Shape& s, Index k) {
       for (const double x : {-1.0, 1.0})
@@ -352,6 +354,48 @@ TEST(ContactLaws, nearly_equal_descriptions_do_not_flicker) {
   }
   const double tilt = std::sqrt(1e-6 * std::sqrt(3.0));
   EXPECT_GT(std::abs(box_box(cube(0.5, {0, 0, 1}, tilt), cube(0.5, {0, 0, 0}, 0), 1e-2)[0].normal[1]), 1e-4) << "equal faces: the first box's";
+}
+
+// A point on a corner of the face that reaches farthest along two diagonals is kept once.
+TEST(ContactLaws, no_point_is_kept_twice) {
+  int corners = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    Random r(seed);
+    const PlacedBox a{{0.3, 0.3, 0.1}, {Eigen::AngleAxisd(r.number(0.2, 1.3), V3::UnitZ()).toRotationMatrix(), {r.number(0, 0.7), r.number(0, 0.7), 0.2}}}, b{{0.5, 0.4, 0.1}, {}};
+    const auto found = box_box(a, b, 1e-3);
+    corners += found.size() == 4;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (std::size_t l = 0; l < k; ++l) EXPECT_GT((found[k].point - found[l].point).norm(), 1e-9) << seed;
+  }
+  EXPECT_GT(corners, 50);
+}
+
+// A centre inside the box leaves through the nearest face.
+TEST(ContactLaws, a_sphere_whose_centre_is_inside_leaves_through_the_nearest_face) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    Random r(seed);
+    const PlacedBox box{{0.3, 0.4, 0.5}, {r.rotation(), r.vector()}};
+    const V3 local(r.number(-0.3, 0.3), r.number(-0.4, 0.4), r.number(-0.5, 0.5));
+    const ShapeContact c = sphere_box(box.placement * local, 0.1, box);
+    double depth = 1;
+    V3 out;
+    for (Index k = 0; k < 3; ++k)
+      for (const double side : {-1.0, 1.0})
+        if (const double way = box.half[k] - side * local[k]; way < depth) depth = way, out = side * box.placement.rotation.col(k);
+    EXPECT_TRUE(small(c.gap + depth + 0.1, 3)) << seed;
+    EXPECT_TRUE(small((c.normal - out).norm(), 3)) << seed;
+    const V3 on_box = box.placement * local + depth * out, on_sphere = box.placement * local - 0.1 * out;
+    EXPECT_TRUE(small((c.point - (on_box + on_sphere) / 2).norm(), 5)) << seed;
+  }
+}
+
+TEST(ContactLaws, edges_apart_by_more_than_the_margin_give_nothing) {
+  Matrix3<double> up, down;  // an edge on top along x, an edge below along y
+  up = Eigen::AngleAxisd(0.7853981633974483, V3::UnitX()).toRotationMatrix();
+  down = Eigen::AngleAxisd(0.7853981633974483, V3::UnitY()).toRotationMatrix();
+  const PlacedBox lower{{0.5, 0.5, 0.5}, {up, V3(0, 0, 0)}};
+  for (const auto& [gap, points] : {std::pair{0.5e-3, 1u}, {2e-3, 0u}})
+    EXPECT_EQ(box_box({{0.5, 0.5, 0.5}, {down, {0, 0, std::sqrt(2.0) + gap}}}, lower, 1e-3).size(), points);
 }
 
 /// Corners of a box, ends of a capsule, the lowest point of a sphere: all that may touch the ground.
