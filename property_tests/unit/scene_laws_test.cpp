@@ -173,6 +173,17 @@ TEST(SceneLaws, the_two_frames_of_a_contact_are_one) {
   EXPECT_GE(s.model.constraints.size(), 9u);
 }
 
+TEST(SceneLaws, the_two_frames_of_a_contact_given_by_hand_are_one) {
+  const Scene s = scene_of(stack + "contacts: [{of: low, at: [0.1, 0.2, 0.2], to: high, normal: [0.3, -0.4, 0.5]}, {of: low, at: [0.1, 0.2, -0.2]}]\n");
+  Poses<double> at;
+  poses(s.model, s.q, at);
+  for (const Constraint& c : s.model.constraints) {
+    const Pose<double> a = world_pose(at, c.a.body) * c.a.placement, b = world_pose(at, c.b.body) * c.b.placement;
+    EXPECT_TRUE(small((a.rotation - b.rotation).cwiseAbs().maxCoeff(), 3)) << c.name;
+    EXPECT_TRUE(small((a.translation - b.translation).norm(), 30)) << c.name;
+  }
+}
+
 // Whose coefficient: the smaller of two shapes, the ground's on the ground, the entry's before all.
 TEST(SceneLaws, friction_is_whose_it_is) {
   const auto of = [](const std::string& text, bool on_ground) {
