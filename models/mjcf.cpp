@@ -151,6 +151,7 @@ void MjcfReader::add_link(int b) {
   } else if (base == Base::fixed) {
     link_[z(b)] = {parent.body, link};
   } else {
+    if (joints == 0 && file_.fixed_inertia_lost) fail("base of the scene", "the inertia of a link that would move comes from meshes whose files are missing", "the files in their places, or base: fixed");
     add_base(b, link, base == Base::planar ? JointType::planar : JointType::floating);
     Joint& joint = bodies_.back().joint;
     if (floats) {

@@ -103,6 +103,7 @@ CompiledMjcf compile_mjcf(const std::string& file) {
     xml.respell_newer();
     xml.strip_missing_files();
     out.left_out = xml.left_out();
+    out.fixed_inertia_lost = xml.fixed_inertia_lost();
     out.site_equalities = xml.site_equalities();
     try {
       out.text = xml.text();

@@ -25,6 +25,7 @@ struct CompiledMjcf {
   std::vector<std::string> warnings;                     ///< MuJoCo's own
   std::string refused;                                   ///< MuJoCo's message to the file itself, when it took it only as `text`
   std::vector<std::string> left_out;                     ///< assets that are not there, and geoms that need them
+  bool fixed_inertia_lost = false;                       ///< of a link that the file fixes to the world
   std::vector<SiteEquality> site_equalities;
   std::string text;                                      ///< what was compiled instead of the file; "" for the file itself
   std::map<std::string, Matrix3<double>> full_inertia;   ///< by body name: `fullinertia` of the file, axes of the body

@@ -115,8 +115,9 @@ void MjcfXml::strip_assets(Element* assets) {
   }
 }
 
-/// Takes out what refers to assets that are gone. `massless`: the inertia of the body does not depend on its geoms.
-void MjcfXml::strip_uses(Element* e, bool massless) {
+/// Takes out what refers to assets that are gone. `moves`: the body or one above it has a joint; `depends`: its inertia
+/// comes from its geoms.
+void MjcfXml::strip_uses(Element* e, bool moves, bool depends) {
   for (Element* c : children(e)) {
     for (const auto& [attribute_name, kind] : {std::pair{"texture", "texture"}, {"material", "material"}, {"hfield", "hfield"}, {"mesh", "mesh"}}) {
       if (c == nullptr || gone_[kind].count(attribute(c, attribute_name)) == 0) continue;
@@ -124,18 +125,21 @@ void MjcfXml::strip_uses(Element* e, bool massless) {
         c->DeleteAttribute(attribute_name);
         continue;
       }
-      const bool geom = is(c, "geom");
+      const bool geom = is(c, "geom"), massless = !moves || !depends;
       if (geom && (!massless || (c->Attribute("type") != nullptr && attribute(c, "type") != "mesh" && attribute(c, "type") != "hfield")))
         throw ModelError(file_, "geom with " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c),
                          "the file of this " + std::string(kind) + " is missing and " + (massless ? "the shape is fitted to it" : "the inertia of its body comes from it"),
                          "the file in its place, or <inertial> in the body");
+      fixed_inertia_lost_ = fixed_inertia_lost_ || (geom && depends);
       if (geom) left_out_.push_back("geom of " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c));
       e->DeleteChild(c);
       c = nullptr;
     }
     if (c == nullptr) continue;
-    const bool body = is(c, "body") || is(c, "worldbody");
-    strip_uses(c, body ? is(c, "worldbody") || c->FirstChildElement("inertial") != nullptr : massless);
+    const bool joint = c->FirstChildElement("joint") != nullptr || c->FirstChildElement("freejoint") != nullptr;
+    if (is(c, "worldbody")) strip_uses(c, false, false);
+    else if (is(c, "body")) strip_uses(c, moves || joint, by_geoms_ || c->FirstChildElement("inertial") == nullptr);
+    else strip_uses(c, moves, depends);
   }
 }
 
@@ -145,7 +149,8 @@ bool MjcfXml::strip_missing_files() {
   for (Element* e : children(root))
     if (is(e, "asset")) strip_assets(e);
   if (left_out_.empty()) return false;
-  strip_uses(root, compiler_option(doc_, "inertiafromgeom") != "true");
+  by_geoms_ = compiler_option(doc_, "inertiafromgeom") == "true";
+  strip_uses(root, false, false);
   return true;
 }
 

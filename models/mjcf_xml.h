@@ -26,13 +26,15 @@ class MjcfXml {
   [[nodiscard]] bool empty() const { return doc_.Error() || doc_.RootElement() == nullptr; }
 
   /// Takes out meshes, height fields, textures and skins whose files are missing, the geoms that are made of them, and
-  /// all that refers to them. @returns false when nothing was missing. @throws ModelError when the mass of a body, or a
+  /// all that refers to them. @returns false when nothing was missing. @throws ModelError when the mass of a moving body, or a
   /// primitive fitted to a mesh, depends on a missing file.
   bool strip_missing_files();
   /// Takes out what MuJoCo 2.2 may not know and M, J and contacts do not need (visuals, sensors, actuators, options of the
   /// solver), and says by its words what newer versions mean by silence: autolimits, assetdir, a short polycoef.
   void respell_newer();
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+  /// A link that the file fixes to the world lost geoms that its inertia comes from.
+  [[nodiscard]] bool fixed_inertia_lost() const { return fixed_inertia_lost_; }
   [[nodiscard]] const std::vector<SiteEquality>& site_equalities() const { return sites_; }
   [[nodiscard]] std::string text() const;
   /// `fullinertia` of every named body whose inertia the file gives, axes of the body.
@@ -43,13 +45,14 @@ class MjcfXml {
   void include(Element* at, const std::string& folder, int depth);
   [[nodiscard]] std::string path_of(const char* kind, const std::string& file) const;
   void strip_assets(Element* assets);
-  void strip_uses(Element* e, bool massless);
+  void strip_uses(Element* e, bool moves, bool depends);
 
   std::string file_, folder_;
   tinyxml2::XMLDocument doc_;
   std::map<std::string, std::map<std::string, bool>> gone_;  ///< kind of asset → names
   std::vector<std::string> left_out_;
   std::vector<SiteEquality> sites_;
+  bool by_geoms_ = false, fixed_inertia_lost_ = false;
 };
 
 }  // namespace delassus

@@ -357,6 +357,16 @@ TEST(Mjcf, missing_meshes_are_left_out_when_no_inertia_needs_them) {
   EXPECT_NE(refusal(with("")).find("inertia of its body"), std::string::npos);
 }
 
+TEST(Mjcf, what_stands_on_the_world_needs_no_mesh_for_its_inertia) {
+  RobotOptions o = options(mjcf("stand", "<asset><mesh name=\"m\" file=\"nowhere.stl\"/></asset><worldbody><body name=\"foot\"><geom type=\"mesh\" mesh=\"m\"/>"
+      "<body name=\"arm\"><joint/><geom type=\"sphere\" size=\"0.1\"/></body></body></worldbody>"));
+  const Read r = read(o);
+  EXPECT_EQ(r.model.dofs(), 1);
+  EXPECT_EQ(r.robot.warnings.size(), 2u);
+  o.base_given = true, o.base = RobotOptions::Base::free;
+  EXPECT_THROW(static_cast<void>(read(o)), ModelError);
+}
+
 // What later versions write (options, sensors, ranges without `limited`) is read without what has no part in M and J.
 TEST(Mjcf, newer_files_are_read_without_what_does_not_matter) {
   const std::string limb = "<inertial pos=\"0 0 0.1\" mass=\"1\" diaginertia=\"1 1 1\"/><site name=\"";
