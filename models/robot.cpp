@@ -54,7 +54,10 @@ void Findings::warn(std::string kind, const std::string& file, const std::string
 
 Robot add_robot(Model& model, const RobotOptions& options) {
   const std::size_t first = model.bodies.size();
-  Robot robot = reader_of(options.file).read(model, options);
+  const Reader& reader = reader_of(options.file);
+  if (!options.keyframe.empty() && reader.what != "MJCF")
+    throw ModelError(options.file, "keyframe", in_quotes(options.keyframe) + ": a " + std::string(reader.what) + " file has no keyframes", "joints: values, or an MJCF file");
+  Robot robot = reader.read(model, options);
   check_regular_robot(model, first, options.file);
   robot.file = options.file;
   robot.mesh_path = options.mesh_path;

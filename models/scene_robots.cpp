@@ -69,6 +69,7 @@ RobotOptions SceneLoader::robot_options(const Yaml& y, const std::string& name) 
       const std::filesystem::path p = folder.text("a folder");
       o.mesh_path.push_back(p.is_relative() ? (std::filesystem::path(path_).parent_path() / p).string() : p.string());
     }
+  if (y.has("keyframe")) o.keyframe = y.at("keyframe").text("name or number of a keyframe of an MJCF file");
   if (y.has("joint_types"))
     for (const auto& [joint, value] : y.at("joint_types").entries()) {
       RobotOptions::Type type;
@@ -170,7 +171,7 @@ void SceneLoader::check_ranges(const Robot& robot, const Yaml& y) {
 }
 
 void SceneLoader::read_robot(const Yaml& y) {
-  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature", "mesh_path"});
+  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature", "mesh_path", "keyframe"});
   const RobotOptions options = robot_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
   Robot robot = add_robot(scene_.model, options);

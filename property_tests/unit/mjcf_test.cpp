@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "algorithms/loop_closing.h"
+#include "models/scene.h"
 #include "models/urdf.h"
 #include "property_tests/unit/mjcf_compare.h"
 #include "property_tests/unit/temporary.h"
@@ -365,6 +366,27 @@ TEST(Mjcf, what_stands_on_the_world_needs_no_mesh_for_its_inertia) {
   EXPECT_EQ(r.robot.warnings.size(), 2u);
   o.base_given = true, o.base = RobotOptions::Base::free;
   EXPECT_THROW(static_cast<void>(read(o)), ModelError);
+}
+
+TEST(Mjcf, a_scene_takes_the_drawn_pose_or_a_keyframe_and_then_its_own_values) {
+  const std::string file = mjcf("in_a_scene", "<worldbody><body name=\"a\" pos=\"0 0 1\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>"
+      "<body name=\"b\"><joint name=\"j\" ref=\"45\"/><inertial pos=\"0 0 0.1\" mass=\"1\" diaginertia=\"1 1 1\"/>"
+      "<body name=\"c\"><joint name=\"k\"/><inertial pos=\"0 0 0.1\" mass=\"1\" diaginertia=\"1 1 1\"/></body></body></body></worldbody>"
+      "<equality><joint joint1=\"k\" joint2=\"j\" polycoef=\"0 2 0 0 0\"/></equality><keyframe><key name=\"up\" qpos=\"1 2 3 1 0 0 0 0.5 0\"/></keyframe>");
+  const auto q = [&](const std::string& more) {
+    return load_scene(write("mjcf_scene.yaml", "robots: [{name: r, file: " + file + more + "}]\n")).q;
+  };
+  const VectorX<double> drawn = q(""), key = q(", keyframe: up, pose: {xyz: [0, 0, 1]}"), given = q(", joints: {j: 1}");
+  EXPECT_EQ(drawn.head<3>(), Vector3<double>(0, 0, 1));
+  EXPECT_LT(std::fabs(drawn[7] - M_PI / 4), 1e-15);
+  EXPECT_EQ(drawn[8], 0);
+  EXPECT_EQ(key.head<3>(), Vector3<double>(1, 2, 4));
+  EXPECT_EQ(key[7], 0.5);
+  EXPECT_LT(std::fabs(key[8] - 2 * (0.5 - M_PI / 4)), 1e-15);
+  EXPECT_LT(std::fabs(given[8] - 2 * (1 - M_PI / 4)), 1e-15);
+  EXPECT_EQ(open_scene(file).q, drawn);
+  const std::string urdf = write("keyed.urdf", "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link></robot>");
+  EXPECT_THROW(load_scene(write("mjcf_scene.yaml", "robots: [{name: r, file: " + urdf + ", keyframe: up}]\n")), ModelError);
 }
 
 // What later versions write (options, sensors, ranges without `limited`) is read without what has no part in M and J.
