@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/accuracy_campaign.h"
 #include "bench/accuracy_digest.h"
 #include "bench/plot.h"
@@ -218,8 +216,8 @@ int run_accuracy(const Options& o) {
 
 }  // namespace
 
-void add_accuracy(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("accuracy", "error against time and operations for every rung and damping");
+void add_accuracy(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("accuracy", "error against time and operations for every rung and damping");
   auto o = std::make_shared<Options>();
   c->add_option("SUBJECT", o->subjects, "scenes (also files and swimmer:N) and families");
   c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(options::whole(1));
@@ -227,7 +225,7 @@ void add_accuracy(CLI::App& app, Run& run) {
   c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2")->check(options::at_least(0, "1/kg"));
   c->add_option("--op", o->ops, "only these rungs");
   c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->capture_default_str();
-  c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(CLI::IsMember({"consistent", "random"}))->capture_default_str();
+  c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(options::one_of({"consistent", "random"}))->capture_default_str();
   c->add_option("--claim", o->claim, "the rung the claim is about")->capture_default_str();
   c->add_option("--out", o->out, "directory for the pictures (SVG)");
   c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(options::above(0, "s"))->capture_default_str();

@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/accuracy.h"
 #include "bench/text.h"
 #include "cli/commands.h"
@@ -127,8 +125,8 @@ int apply(const Options& o, bool has_damping) {
 
 }  // namespace
 
-void add_apply(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("apply", "apply or invert one operator: a = A f, or with --solve f = A⁻¹ a");
+void add_apply(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("apply", "apply or invert one operator: a = A f, or with --solve f = A⁻¹ a");
   auto o = std::make_shared<Options>();
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--op", o->op, "operator (see `delassus list operators`)")->required();
@@ -140,10 +138,10 @@ void add_apply(CLI::App& app, Run& run) {
         const double x = std::strtod(text.c_str(), &end);
         return !text.empty() && *end == 0 && x >= 0 ? std::string() : "'" + text + "' is not a number ≥ 0 (accepted: 0 … inf)";
       });
-  CLI::Option* input = c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, see --rhs");
+  options::Option* input = c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, see --rhs");
   c->add_option("--rhs", o->rhs, "without --input: ones; consistent: A times ones, which dependent hard rows do not contradict")
-      ->check(CLI::IsMember({"ones", "consistent"}))->excludes(input)->capture_default_str();
-  CLI::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's")->check(options::at_least(0, "1/kg"));
+      ->check(options::one_of({"ones", "consistent"}))->excludes(input)->capture_default_str();
+  options::Option* damping = c->add_option("--damping", o->damping, "R⁻¹ of every row [1/kg] instead of the scene's")->check(options::at_least(0, "1/kg"));
   c->add_flag("--json", o->as_json, "print {scene, op, function, dof, rows, damping, input, output, report, dependent_rows, dependent_row_names, place, warnings, with --solve operations_over_lcaba}");
   add_scene_options(*c, o->opening);
   c->footer("Exit code 1 when the report's status is not ok; the output is NaN then (null in JSON), or the best iterate.");

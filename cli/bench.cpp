@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <fstream>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/cell.h"
 #include "bench/machine.h"
 #include "bench/scene_facts.h"
@@ -114,8 +112,8 @@ int run_bench(const Options& o) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("bench", "time, counted operations and memory of operators on scenes");
+void add_bench(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("bench", "time, counted operations and memory of operators on scenes");
   auto o = std::make_shared<Options>();
   c->add_option("--scene", o->scenes, "only these scenes (also files and swimmer:N)");
   c->add_option("--op", o->ops, "only these operators");

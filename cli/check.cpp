@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <map>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/text.h"
 #include "cli/check_digits.h"
 #include "cli/commands.h"
@@ -135,8 +133,8 @@ int digits_of(const Options& o) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("check", "hold the laws against the references; worst error ratio per law");
+void add_check(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("check", "hold the laws against the references; worst error ratio per law");
   auto o = std::make_shared<Options>();
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`)");

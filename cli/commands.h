@@ -4,8 +4,8 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
+namespace delassus::options {
+class Command;
 }
 
 namespace delassus::cli {
@@ -15,16 +15,16 @@ enum Exit : int { good = 0, law_broken = 1, bad_input = 2, slower = 3 };
 
 using Run = std::function<int()>;
 
-void add_list(CLI::App& app, Run& run);
-void add_describe(CLI::App& app, Run& run);
-void add_check(CLI::App& app, Run& run);
-void add_apply(CLI::App& app, Run& run);
-void add_export(CLI::App& app, Run& run);
-void add_accuracy(CLI::App& app, Run& run);
-void add_bench(CLI::App& app, Run& run);
-void add_report(CLI::App& app, Run& run);
-void add_survey(CLI::App& app, Run& run);
-void add_stress(CLI::App& app, Run& run);
-void add_replay(CLI::App& app, Run& run);
+void add_list(options::Command& app, Run& run);
+void add_describe(options::Command& app, Run& run);
+void add_check(options::Command& app, Run& run);
+void add_apply(options::Command& app, Run& run);
+void add_export(options::Command& app, Run& run);
+void add_accuracy(options::Command& app, Run& run);
+void add_bench(options::Command& app, Run& run);
+void add_report(options::Command& app, Run& run);
+void add_survey(options::Command& app, Run& run);
+void add_stress(options::Command& app, Run& run);
+void add_replay(options::Command& app, Run& run);
 
 }  // namespace delassus::cli

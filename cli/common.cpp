@@ -7,22 +7,19 @@
 #include <iterator>
 #include <map>
 
-#include <CLI/CLI.hpp>
-
 #include "property_tests/defects.h"
 #include "property_tests/options.h"
 
 namespace delassus::cli {
 
-void add_scene_options(CLI::App& app, SceneOptions& options) {
+void add_scene_options(options::Command& app, SceneOptions& options) {
   app.add_flag("--strict", options.strict, "what is only doubtful in a scene or a robot's file is an error");
   const std::map<std::string, RobotOptions::Base> bases{
       {"free", RobotOptions::Base::free}, {"fixed", RobotOptions::Base::fixed}, {"planar", RobotOptions::Base::planar}};
-  app.add_option_function<std::string>("--base", [&options, bases](const std::string& text) { options.base = bases.at(text); },
+  app.add_option_function("--base", [&options, bases](const std::string& text) { options.base = bases.at(text); },
                                        "of a robot's file: free, fixed or planar (default: free; fixed when the root link is named world)")
-      ->check(CLI::IsMember({"free", "fixed", "planar"}));
-  app.add_option_function<double>("--armature", [&options](const double& x) { options.armature = x; },
-                                  "of a robot's file: of every joint to which the file gives none [kg m² or kg]")
+      ->check(options::one_of({"free", "fixed", "planar"}));
+  app.add_option("--armature", options.armature, "of a robot's file: of every joint to which the file gives none [kg m² or kg]")
       ->check(options::at_least(0, "kg m² or kg"));
 }
 

@@ -10,8 +10,8 @@
 #include "algorithms/delassus.h"
 #include "models/scene.h"
 
-namespace CLI {
-class App;
+namespace delassus::options {
+class Command;
 }
 
 namespace delassus::cli {
@@ -19,7 +19,7 @@ namespace delassus::cli {
 using nlohmann::json;
 
 /// Adds --strict, --base and --armature, which say how a scene or a robot's file is opened.
-void add_scene_options(CLI::App& app, SceneOptions& options);
+void add_scene_options(options::Command& app, SceneOptions& options);
 
 /// Opens a scene and, when `damping` is given, replaces R⁻¹ of every row by it [1/kg]. Warnings go to standard error.
 /// @throws ModelError for an unknown scene and for a damping that is negative or not finite.

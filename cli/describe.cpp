@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <new>
 
-#include <CLI/CLI.hpp>
-
 #include "algorithms/elimination.h"
 #include "bench/scene_facts.h"
 #include "bench/text.h"
@@ -12,6 +10,7 @@
 #include "cli/common.h"
 #include "cli/describe_robot.h"
 #include "cli/effects.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -159,8 +158,8 @@ int describe(const std::string& name, const SceneOptions& opening, bool as_json)
 
 }  // namespace
 
-void add_describe(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("describe", "bodies, rows, elimination order, fill, bytes, effects called for and skipped");
+void add_describe(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("describe", "bodies, rows, elimination order, fill, bytes, effects called for and skipped");
   auto scene = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false);
   auto opening = std::make_shared<SceneOptions>();

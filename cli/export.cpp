@@ -2,11 +2,10 @@
 #include <cstdio>
 #include <fstream>
 
-#include <CLI/CLI.hpp>
-
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "reference/definition.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -81,8 +80,8 @@ int export_scene(const std::string& name, const SceneOptions& opening, const std
 
 }  // namespace
 
-void add_export(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("export", "the numeric problem and dense M, J, R⁻¹ as JSON, for others to check");
+void add_export(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("export", "the numeric problem and dense M, J, R⁻¹ as JSON, for others to check");
   auto scene = std::make_shared<std::string>(), file = std::make_shared<std::string>();
   c->add_option("scene", *scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   auto opening = std::make_shared<SceneOptions>();

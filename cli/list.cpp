@@ -1,8 +1,6 @@
 // `delassus list`: the tables, as they are compiled in.
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/scene_facts.h"
 #include "bench/text.h"
 #include "cli/commands.h"
@@ -12,6 +10,7 @@
 #include "generators/families.h"
 #include "property_tests/defects.h"
 #include "reference/reference.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -129,14 +128,14 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
 
 }  // namespace
 
-void add_list(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects");
+void add_list(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects");
   auto table = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
-  std::set<std::string> names;
-  for (const Table& t : tables) names.insert(t.name);
-  c->add_option("table", *table, "one table; all when left out")->check(CLI::IsMember(names));
-  CLI::Option* json_flag = c->add_flag("--json", *as_json, "an array of objects with `name`");
+  std::vector<std::string> names;
+  for (const Table& t : tables) names.emplace_back(t.name);
+  c->add_option("table", *table, "one table; all when left out")->check(options::one_of(names));
+  options::Option* json_flag = c->add_flag("--json", *as_json, "an array of objects with `name`");
   c->add_flag("--markdown", *as_markdown, "a table for a page")->excludes(json_flag);
   c->callback([=, &run] { run = [=] { return list(*table, *as_json, *as_markdown); }; });
 }

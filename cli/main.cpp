@@ -3,15 +3,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
-
 #include "algorithms/status.h"
 #include "cli/commands.h"
 #include "property_tests/allocations.h"
+#include "property_tests/options.h"
 
 namespace {
 
@@ -33,40 +33,30 @@ void limit_memory() {
 #endif
 }
 
-/// Whether the first argument is meant as a subcommand but is none.
-bool unknown_subcommand(const CLI::App& app, const std::string& first) {
-  const auto known = app.get_subcommands([&](const CLI::App* c) { return c->get_name() == first; });
-  return !first.empty() && first[0] != '-' && known.empty();
-}
-
-std::string subcommand_names(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : ", ") + c->get_name();
-  return names;
+std::string listed(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace delassus::cli;
-  CLI::App app{"Matrix-free Delassus operators of articulated rigid bodies: A = J M⁻¹ Jᵀ + R⁻¹."};
-  app.require_subcommand(1);
+  namespace options = delassus::options;
+  options::Command app{"Matrix-free Delassus operators of articulated rigid bodies: A = J M⁻¹ Jᵀ + R⁻¹."};
+  app.require_subcommand();
   app.footer("Exit codes: 0 ok, 1 a law is broken (or a solve did not end well), 2 bad input or usage, "
              "3 slower than the baseline.");
   limit_memory();
   delassus::laws::count_allocations();
   Run run;
   for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_accuracy, add_report, add_stress, add_survey, add_replay}) add(app, run);
-  if (argc > 1 && unknown_subcommand(app, argv[1]))
-    return fail("there is no subcommand " + std::string(argv[1]) + " (accepted: " + subcommand_names(app) + ")", bad_input);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);  // --help
-  } catch (const CLI::ParseError& e) {
-    return fail(std::string(e.what()) + "\nRun with --help for what is accepted.", bad_input);
-  }
+  const std::vector<std::string> known = app.subcommands();
+  if (argc > 1 && argv[1][0] != '-' && std::find(known.begin(), known.end(), argv[1]) == known.end())
+    return fail("there is no subcommand " + std::string(argv[1]) + " (accepted: " + listed(known) + ")", bad_input);
+  std::string error;
+  if (const std::optional<int> exit = app.parse(argc, argv, error)) return *exit == 0 ? good : fail(error, bad_input);
   try {
     return run();
   } catch (const delassus::ModelError& e) {

@@ -1,11 +1,10 @@
 // `delassus replay`: a failure found by `stress`, or any spec, built again and held against the laws.
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/stress_json.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -70,8 +69,8 @@ int replay(const Options& o) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("replay", "build a failure found by `stress`, or any spec, again and check it");
+void add_replay(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("replay", "build a failure found by `stress`, or any spec, again and check it");
   auto o = std::make_shared<Options>();
   c->add_option("FILE", o->file, "a failure written by `stress`, or a spec as JSON")->required();
   c->add_option("--law", o->law, "this law instead of the one that failed");

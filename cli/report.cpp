@@ -1,11 +1,10 @@
 // `delassus report --out DIR`: the main job.
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/report.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "property_tests/options.h"
 
 namespace delassus::cli {
 
@@ -24,8 +23,8 @@ int report(const bench::ReportOptions& options, const std::string& directory) {
 
 }  // namespace
 
-void add_report(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("report", "check and time every operator on every scene; write a page and the numbers");
+void add_report(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("report", "check and time every operator on every scene; write a page and the numbers");
   auto options = std::make_shared<bench::ReportOptions>();
   auto directory = std::make_shared<std::string>();
   c->add_option("--out", *directory, "directory for index.html and results.json")->required();

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <random>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/stress_json.h"
@@ -190,8 +188,8 @@ int stress(const Options& o) {
 
 }  // namespace
 
-void add_stress(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("stress", "randomised search for broken laws");
+void add_stress(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("stress", "randomised search for broken laws");
   auto o = std::make_shared<Options>();
   c->add_option("--time", o->time, "how long: 60 or 60s, 10m, 2h")->capture_default_str();
   c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(options::whole(1));
@@ -200,7 +198,7 @@ void add_stress(CLI::App& app, Run& run) {
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--defect", o->defect, "an operator that is wrong in one respect (see `delassus list defects`): what the search must find");
   c->add_option("--failures", o->failures, "stop after this many pairs of law and operator")->check(options::whole(1))->capture_default_str();
-  c->add_option("--folder", o->folder, "where failures are written")->check(CLI::ExistingDirectory)->capture_default_str();
+  c->add_option("--folder", o->folder, "where failures are written")->check(options::existing_directory())->capture_default_str();
   c->add_option("--report", o->report, "write what was done as JSON; {shard} in the name becomes the shard's number");
   c->add_option("--merge", o->merge, "put reports of shards together instead of searching");
   c->add_flag("--json", o->as_json, "print {seed, shard, shards, problems, checks, skipped, seconds, classes, failures}, the report of --report with the `file` of every failure");

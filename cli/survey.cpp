@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <map>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/survey_file.h"
@@ -198,11 +196,11 @@ int survey(const Options& o) {
 
 }  // namespace
 
-void add_survey(CLI::App& app, Run& run) {
-  CLI::App* c = app.add_subcommand("survey", "robots of a folder: which load, with which warnings, which not and why; M, J, J M⁻¹ Jᵀ against a second reading");
+void add_survey(options::Command& app, Run& run) {
+  options::Command* c = app.add_subcommand("survey", "robots of a folder: which load, with which warnings, which not and why; M, J, J M⁻¹ Jᵀ against a second reading");
   auto o = std::make_shared<Options>();
   c->add_option("folder", o->folder, "searched for .urdf, .sdf and MJCF .xml, with all below it; or one file")->required();
-  c->add_option("--base", o->file.base, "auto: free, or fixed where M is regular only then")->check(CLI::IsMember({"auto", "free", "fixed"}))->capture_default_str();
+  c->add_option("--base", o->file.base, "auto: free, or fixed where M is regular only then")->check(options::one_of({"auto", "free", "fixed"}))->capture_default_str();
   c->add_option("--armature", o->file.armature, "of joints that are given none [kg m² or kg]")->check(options::at_least(0, "kg m² or kg"));
   c->add_option("--poses", o->file.poses, "random configurations at which matrices are compared")->check(options::whole(0))->capture_default_str();
   c->add_option("--limit", o->limit, "time for one file [s]")->check(options::above(0, "s"))->capture_default_str();

@@ -9,7 +9,7 @@ struct SurveyOptions {
   std::string base = "auto";   ///< auto: free, or fixed where only that loads; free; fixed
   double armature = -1;        ///< [kg m² or kg] of joints that are given none; negative: none
   bool strict = false;
-  int poses = 2;               ///< random configurations
+  std::int64_t poses = 2;      ///< random configurations
 };
 
 /// Whether the text is a robot that can be surveyed: a .urdf, or .xml and .sdf whose root element says so.

@@ -225,7 +225,7 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Certificates of random problems against the truth (docs/hard_cases.md).\n"
+  options::Command app{"Certificates of random problems against the truth (docs/hard_cases.md).\n"
                "Exit code 1 when one is violated."};
   Options o;
   app.add_option("--count", o.count, "problems, of all shards together")->check(options::whole(1))->capture_default_str();

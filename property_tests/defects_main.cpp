@@ -130,11 +130,11 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) {
   count_allocations();
-  CLI::App app{"Tests of the tests: every defect must be caught by a law, every law must catch a defect (docs/defects.md).\n"
+  options::Command app{"Tests of the tests: every defect must be caught by a law, every law must catch a defect (docs/defects.md).\n"
                "Exit code 1 when something goes uncaught, or a right operator breaks a law."};
   Options o;
-  CLI::Option* names = app.add_option("NAME", o.names, "these defects alone (see `delassus list defects`)");
+  options::Option* names = app.add_option("NAME", o.names, "these defects alone (see `delassus list defects`)");
   app.add_flag("--markdown", o.markdown, "the matrix defect × law for a page")->excludes(names);
-  app.add_option("--page", o.page, "a page that must show this matrix")->excludes(names)->check(CLI::ExistingFile);
+  app.add_option("--page", o.page, "a page that must show this matrix")->excludes(names)->check(options::existing_file());
   return options::run(app, argc, argv, [&] { return run(o); });
 }

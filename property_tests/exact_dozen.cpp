@@ -166,10 +166,10 @@ int run(const std::string& op, const std::string& defect) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Operators in rational numbers on mechanisms of twelve bodies: equal to the definition, and the round trip.\n"
+  options::Command app{"Operators in rational numbers on mechanisms of twelve bodies: equal to the definition, and the round trip.\n"
                "Exit code 1 when something is not equal, or an operator was left out everywhere."};
   std::string op, defect;
-  CLI::Option* one = app.add_option("--op", op, "only this operator");
+  options::Option* one = app.add_option("--op", op, "only this operator");
   app.add_option("--defect", defect, "a wrong operator (see `delassus list defects`)")->excludes(one);
   return options::run(app, argc, argv, [&] { return run(op, defect); });
 }

@@ -193,15 +193,15 @@ int fuzz(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Broken robots, scenes and specs for the loaders: each is refused in words, or loads as what it says."};
+  options::Command app{"Broken robots, scenes and specs for the loaders: each is refused in words, or loads as what it says."};
   Options o;
   app.add_option("--count", o.count, "mutants")->check(options::whole(0))->capture_default_str();
   app.add_option("--seed", o.seed, "of the mutants")->check(options::whole(0))->capture_default_str();
   app.add_option("--limit", o.limit, "time for one text [s]")->check(options::above(0, "s"))->capture_default_str();
   app.add_option("--findings", o.findings, "stop after so many")->capture_default_str();
-  app.add_option("--only", o.only, "one format")->check(CLI::IsMember({"urdf", "yaml", "json", "xml", "sdf"}));
-  app.add_option("--keep", o.keep, "folder for the texts of findings")->check(CLI::ExistingDirectory)->capture_default_str();
-  app.add_option("FILE", o.files, "judge these only")->check(CLI::ExistingFile);
+  app.add_option("--only", o.only, "one format")->check(options::one_of({"urdf", "yaml", "json", "xml", "sdf"}));
+  app.add_option("--keep", o.keep, "folder for the texts of findings")->check(options::existing_directory())->capture_default_str();
+  app.add_option("FILE", o.files, "judge these only")->check(options::existing_file());
   app.footer("Exit code 1 with a finding.");
   return options::run(app, argc, argv, [&] { return fuzz(o); });
 }

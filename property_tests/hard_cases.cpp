@@ -130,7 +130,7 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"The catalogue of hard cases: what every operator that solves makes of it.\n"
+  options::Command app{"The catalogue of hard cases: what every operator that solves makes of it.\n"
                "Exit code 1 when an answer breaks a promise."};
   Options o;
   app.add_option("--family", o.family, "only this family of the catalogue");

@@ -78,7 +78,7 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) {
   count_allocations();
-  CLI::App app{"Every law that applies, on every family, for every operator.\nExit code 1 when a law is broken."};
+  options::Command app{"Every law that applies, on every family, for every operator.\nExit code 1 when a law is broken."};
   Options o;
   app.add_option("--op", o.op, "only this operator");
   app.add_option("--family", o.family, "only this family");
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", o.seeds, "problems of every family and size")->check(options::whole(1))->capture_default_str();
   options::add_shard(app, o.shard);
   app.add_option("--table", o.table, "a table of docs/verification.md in place of the summary: ratios; promises: of what would be checked, without checking it")
-      ->check(CLI::IsMember({"ratios", "promises"}));
+      ->check(options::one_of({"ratios", "promises"}));
   app.add_flag("--verbose", o.verbose, "every check");
   app.add_flag("--times", o.times, "processor time of every problem");
   return options::run(app, argc, argv, [&] { return run(o); });

@@ -200,7 +200,7 @@ int run(bool markdown) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"The paper's lines as printed, one at a time, in rational numbers (docs/paper_notes.md).\n"
+  options::Command app{"The paper's lines as printed, one at a time, in rational numbers (docs/paper_notes.md).\n"
                "Exit code 1 when a printed line is not exposed, or a corrected one is wrong."};
   bool markdown = false;
   app.add_flag("--markdown", markdown, "a table for a page");

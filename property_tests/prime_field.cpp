@@ -304,7 +304,7 @@ int run(const std::string& only) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Identities between routes at thousands of bodies, exactly: in the integers modulo 2⁶¹ − 1.\n"
+  options::Command app{"Identities between routes at thousands of bodies, exactly: in the integers modulo 2⁶¹ − 1.\n"
                "Exit code 1 when one is broken, or does not notice a changed number."};
   std::string op;
   app.add_option("--op", op, "only this operator");

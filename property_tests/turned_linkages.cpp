@@ -106,11 +106,11 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Hard rows of linkages, turned: ranks and inertias. Exit code 1 when one is wrong."};
+  options::Command app{"Hard rows of linkages, turned: ranks and inertias. Exit code 1 when one is wrong."};
   Options o;
   app.add_option("--count", o.count, "turns of every linkage")->check(options::whole(1))->capture_default_str();
   app.add_option("--seed", o.seed, "of the turns")->check(options::whole(0))->capture_default_str();
-  app.add_option("--rule", o.rule, "shipped, or a wrong one")->check(CLI::IsMember({"shipped", "diagonal", "one_row_more"}));
+  app.add_option("--rule", o.rule, "shipped, or a wrong one")->check(options::one_of({"shipped", "diagonal", "one_row_more"}));
   app.add_flag("--verbose", o.verbose, "every failure");
   return options::run(app, argc, argv, [&] { return run(o); });
 }
