@@ -29,7 +29,7 @@ generators::Spec draw(Index bodies, std::uint64_t seed, bool physical) {
   using generators::JointKind;
   constexpr JointKind joints[] = {JointKind::revolute, JointKind::revolute, JointKind::prismatic, JointKind::universal,
                                   JointKind::spherical};
-  generators::Spec spec{.family = "paper_lines", .seed = seed, .bodies = {}, .links = {}, .joints = {}};
+  generators::Spec spec{.family = "paper_lines", .seed = seed, .bodies = {}, .links = {}, .joints = {}, .turn = {}};
   for (Index i = 0; i < bodies; ++i) {
     generators::BodySpec b;
     b.parent = between(-1, i - 1);
