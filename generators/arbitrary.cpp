@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "generators/draft.h"
+#include "generators/families_linkages.h"
 
 namespace delassus::generators {
 namespace {
@@ -136,6 +137,11 @@ Index size(Random& r) {
 }  // namespace
 
 Spec arbitrary(std::uint64_t seed) {
+  if (Random linkages(seed ^ 0x6c696e6b); one_in(linkages, 16)) {
+    Spec s = any_linkage(seed);
+    s.family = "arbitrary";
+    return s;
+  }
   Draft d("arbitrary", seed);
   if (one_in(d.random, 256)) add_long_chain(d);
   else add_bodies(d, size(d.random));
