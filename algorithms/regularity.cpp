@@ -83,8 +83,8 @@ std::optional<Lost> first_lost_pivot(const Model& model, const Model* sizes, con
       const Vector6<Quad> u = articulated[i] * p.S[k];
       const Quad pivot = p.S[k].dot(u) + p.armature[k];
       const Quad whole = p.S[k].dot(Vector6<Quad>(children[i] * p.S[k])) + p.armature[k];
-      // The rounding in Quad of the sums a pivot is made from: below it a pivot is zero.
-      const Quad rounding = 30 * 36 * unit_roundoff<Quad> * p.S[k].cwiseAbs().dot(Vector6<Quad>(articulated[i].cwiseAbs() * p.S[k].cwiseAbs()));
+      // The rounding in double of the sums a pivot is made from: below it an operator loses the pivot, whatever its sign.
+      const Quad rounding = lost * p.S[k].cwiseAbs().dot(Vector6<Quad>(children[i].cwiseAbs() * p.S[k].cwiseAbs()));
       const bool negative = pivot < -(lost * whole + rounding);
       if (negative || !(pivot > (kind == Kind::definite ? Quad(0) : lost * whole + rounding)))
         return Lost{i, k - s.first_dof[i], static_cast<double>(pivot), static_cast<double>(whole), negative};
