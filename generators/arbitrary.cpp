@@ -137,7 +137,7 @@ Index size(Random& r) {
 }  // namespace
 
 Spec arbitrary(std::uint64_t seed) {
-  if (Random linkages(seed ^ 0x6c696e6b); one_in(linkages, 16)) {
+  if (Random linkages(seed ^ 0x6c696e6b); one_in(linkages, 64)) {
     Spec s = any_linkage(seed);
     s.family = "arbitrary";
     return s;

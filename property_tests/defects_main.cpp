@@ -30,7 +30,8 @@ struct Pinned {
 };
 /// Small problems that have what the defects need; `large` only for what they let pass.
 constexpr Pinned pinned[] = {{"generic", 4, 1}, {"generic", 5, 2}, {"humanoid", 7, 1}, {"massless", 3, 1}, {"block_damping", 2, 1},
-                             {"several_trees", 4, 1}, {"mixed_damping", 10, 1}, {"hard", 4, 1}, {"no_rows", 2, 1}};
+                             {"several_trees", 4, 1}, {"mixed_damping", 10, 1}, {"hard", 4, 1}, {"no_rows", 2, 1},
+                             {"crank_rocker", 3, 1}, {"jansen", 7, 1}, {"bennett", 3, 3}};
 constexpr Pinned large = {"chain", 66, 1};
 
 std::vector<Case> cases() {

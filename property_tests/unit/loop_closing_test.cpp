@@ -295,7 +295,6 @@ TEST(Assembly, whole_robots_and_boxes_are_held) {
   expect_refused([&] { (void)load_scene(write("held.yaml", text_of + "assembly: {tolerance: -1}\n")); }, {"held.yaml:6", "negative"});
 }
 
-// Fails with the sides exchanged, and with the rows of another degree of freedom.
 TEST(JointLimits, are_rows_of_their_side) {
   JointText two, three;
   two.limits = "lower=\"-1\" upper=\"2\"", three.limits = "lower=\"-1\" upper=\"2\"";
