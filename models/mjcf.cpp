@@ -230,18 +230,10 @@ void MjcfReader::add_inertia(int b) {
   parts_[z(link.body - first_)].push_back({m_.body_mass[b], principal.translation, I});
 }
 
-/// I = Σ I_k + m_k (|d|² 1 − d dᵀ), d = c_k − c.
 void MjcfReader::finish_bodies() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
-    for (const Part& p : parts_[i]) body.mass += p.mass, body.com += p.mass * p.com;
-    if (body.mass > 0) body.com /= body.mass;
-    if (parts_[i].size() == 1) body.com = parts_[i][0].com;
-    for (const Part& p : parts_[i]) {
-      const Vector3<double> d = p.com - body.com;
-      body.inertia += p.inertia + p.mass * (d.squaredNorm() * Matrix3<double>::Identity() - d * d.transpose());
-    }
-    body.inertia = (body.inertia + body.inertia.transpose()).eval() / 2;
+    sum_parts(parts_[i], body);
     validate_body(body, options_.file);
     out_.bodies.push_back(model_.add(std::move(body)));
   }

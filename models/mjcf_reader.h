@@ -2,6 +2,7 @@
 #pragma once
 
 #include "models/mjcf_compile.h"
+#include "models/parts.h"
 #include "models/robot.h"
 
 namespace delassus {
@@ -12,13 +13,6 @@ class MjcfReader {
   Robot run();
 
  private:
-  /// Mass, centre of mass and inertia of one link, in its body's frame.
-  struct Part {
-    double mass;
-    Vector3<double> com;
-    Matrix3<double> inertia;
-  };
-
   // mjcf.cpp
   void choose_pose();
   void check_options() const;

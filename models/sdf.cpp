@@ -8,6 +8,7 @@
 #include "models/contacts.h"
 #include "models/inertia_check.h"
 #include "models/message.h"
+#include "models/parts.h"
 #include "models/sdf_document.h"
 #include "models/tally.h"
 
@@ -21,25 +22,6 @@ using Kind = Constraint::Kind;
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 std::string element_of(const SdfDocument::JointRow& j) { return "joint " + in_quotes(j.name); }
-
-/// Mass, centre of mass and inertia of one link, in its body's frame.
-struct Part {
-  double mass;
-  V3 com;
-  Matrix3<double> inertia;
-};
-
-/// I = Σ I_k + m_k (|d|² 1 − d dᵀ), d = c_k − c.
-void sum_parts(const std::vector<Part>& parts, Body& body) {
-  for (const Part& p : parts) body.mass += p.mass, body.com += p.mass * p.com;
-  if (body.mass > 0) body.com /= body.mass;
-  if (parts.size() == 1) body.com = parts[0].com;
-  for (const Part& p : parts) {
-    const V3 d = p.com - body.com;
-    body.inertia += p.inertia + p.mass * (d.squaredNorm() * Matrix3<double>::Identity() - d * d.transpose());
-  }
-  body.inertia = (body.inertia + body.inertia.transpose()).eval() / 2;
-}
 
 class SdfBuilder {
  public:

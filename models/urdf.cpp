@@ -6,6 +6,7 @@
 
 #include "models/inertia_check.h"
 #include "models/message.h"
+#include "models/parts.h"
 #include "models/urdf_check.h"
 
 namespace delassus {
@@ -18,35 +19,11 @@ Pose<double> pose(const urdf::Pose& p) {
   return {Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix(), vector(p.position)};
 }
 
-/// Mass, centre of mass and inertia of one link, in its body's frame.
-struct Part {
-  double mass;
-  Vector3<double> com;
-  Matrix3<double> inertia;
-};
-
 Part part_of(const urdf::Inertial& in, const Pose<double>& link_in_body) {
   Matrix3<double> I;
   I << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
   const Pose<double> X = link_in_body * pose(in.origin);
   return {in.mass, X.translation, X.rotation * I * X.rotation.transpose()};
-}
-
-/// Sum of the parts: I = Σ I_k + m_k (|d|² 1 − d dᵀ), d = c_k − c.
-void sum_parts(const std::vector<Part>& parts, Body& body) {
-  if (parts.size() == 1) {
-    body.mass = parts[0].mass, body.com = parts[0].com;
-    body.inertia = (parts[0].inertia + parts[0].inertia.transpose()) / 2;
-    return;
-  }
-  for (const Part& p : parts) body.mass += p.mass, body.com += p.mass * p.com;
-  if (body.mass == 0) body.com.setZero();
-  else body.com /= body.mass;
-  for (const Part& p : parts) {
-    const Vector3<double> d = p.com - body.com;
-    body.inertia += p.inertia + p.mass * (d.squaredNorm() * Matrix3<double>::Identity() - d * d.transpose());
-  }
-  body.inertia = (body.inertia + body.inertia.transpose()).eval() / 2;
 }
 
 /// Moments of mass about a frame's origin, with the size of what was added: another route to what sum_parts computes.
