@@ -32,6 +32,13 @@ int Results::checked() const {
   return n;
 }
 
+int Results::unchecked() const {
+  int n = 0;
+  for (const SceneResult& s : scenes)
+    for (const Cell& c : s.cells) n += c.checked() == 0;
+  return n;
+}
+
 int Results::failed() const {
   int n = 0;
   for (const SceneResult& s : scenes)

@@ -102,6 +102,7 @@ struct Results {
 
   [[nodiscard]] int checked() const;
   [[nodiscard]] int failed() const;
+  [[nodiscard]] int unchecked() const;  ///< pairs of operator and scene on which no law was checked
 };
 
 void to_json(nlohmann::json& j, const Results& r);
