@@ -109,7 +109,7 @@ std::string summary_section(const Results& r) {
   s += "<div class=\"facts\">";
   const int unchecked = r.unchecked();
   const std::string rest = unchecked == 0 ? "" : "; " + std::to_string(unchecked) + " of these pairs were not checked, for want of time: delassus check SCENE --op NAME does";
-  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : unchecked ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
+  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : r.checked() == 0 ? "–" : unchecked ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
             failed ? "of " + std::to_string(r.checked()) + " law checks failed"
                    : std::to_string(r.checked()) + " law checks: " + std::to_string(r.operators.size()) +
                          " operators on " + std::to_string(r.scenes.size()) + " scenes" + escape(rest));
