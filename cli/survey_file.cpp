@@ -13,7 +13,10 @@
 
 #include "algorithms/delassus.h"
 #include "models/robot.h"
+#include "property_tests/mjcf_reading.h"
+#include "property_tests/second_reading.h"
 #include "property_tests/verdict.h"
+#include "reference/sdf_witness.h"
 #include "reference/sensitivity.h"
 #include "reference/urdf_witness.h"
 
@@ -21,7 +24,6 @@ namespace delassus::cli {
 
 namespace {
 
-using reference::UrdfMatrices;
 using reference::UrdfWitness;
 
 std::string bytes_of(const std::string& file) {
@@ -90,14 +92,18 @@ struct Loaded {
   Robot robot;
 };
 
-Loaded load(const std::string& file, RobotOptions::Base base, bool given, const SurveyOptions& o) {
-  Loaded out;
+RobotOptions options_of(const std::string& file, RobotOptions::Base base, bool given, const SurveyOptions& o) {
   RobotOptions options;
   options.file = file, options.robot = "robot";
   options.base = base, options.base_given = given;
   options.strict = o.strict, options.armature_of_all = o.armature;
+  return options;
+}
+
+Loaded load(const RobotOptions& options) {
+  Loaded out;
   out.robot = add_robot(out.model, options);
-  validate(out.model, file);
+  validate(out.model, options.file);
   return out;
 }
 
@@ -116,25 +122,12 @@ VectorX<double> pose(const Model& model, std::uint64_t seed) {
   return q;
 }
 
-/// At most six of a list, spread over it.
-std::vector<Index> some(const std::vector<Index>& all) {
-  constexpr std::size_t most = 6;
-  if (all.size() <= most) return all;
-  std::vector<Index> out;
-  for (std::size_t k = 0; k < most; ++k) out.push_back(all[k * all.size() / most]);
-  return out;
-}
-
 struct Ratios {
   double M = 0, J = 0, A = 0, apply = 0;
+  Index rows = 0;   ///< of J, compared
 };
 
 void raise(double& largest, double ratio) { largest = std::max(largest, std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio); }
-
-double judged(const MatrixX<Quad>& x, const MatrixX<Quad>& y, const MatrixX<Quad>& bound, const char* name) {
-  if (x.rows() != y.rows() || x.cols() != y.cols()) return std::numeric_limits<double>::infinity();
-  return laws::judge(MatrixX<Quad>(x - y), bound, unit_roundoff<double>, name).ratio;
-}
 
 /// A0 of an operator, column by column, against the definition.
 void judge_operator(const Problem<double>& problem, const Damping<double>& none, const reference::Sensitivity& sensitivity, double& largest) {
@@ -152,34 +145,23 @@ void judge_operator(const Problem<double>& problem, const Damping<double>& none,
   }
 }
 
-/// `witness` is null for a file that only its own library reads: then the operator is held against the definition alone.
-void compare(Loaded& loaded, const UrdfWitness* witness, const SurveyOptions& o, Ratios& out) {
-  std::vector<Index> welded;
-  if (witness != nullptr) {
-    welded = some(witness->leaves());
-    for (const Index i : welded) {
-      Constraint c;
-      c.kind = Constraint::Kind::weld;
-      const std::string& name = witness->links[static_cast<std::size_t>(i)].name;
-      const auto it = loaded.robot.links.find(name);
-      if (it == loaded.robot.links.end()) throw std::runtime_error("link " + name + " is not in the model");
-      c.a = it->second;
-      loaded.model.constraints.push_back(c);
-    }
-  }
+/// `second` is null for a file that has no second reading here: then the operator is held against the definition alone.
+void compare(Loaded& loaded, SecondReading* second, const SurveyOptions& o, Ratios& out) {
+  if (second != nullptr) second->add_welds(loaded.model, loaded.robot);
   if (loaded.model.dofs() == 0) return;
   for (int k = 0; k < o.poses; ++k) {
-    const VectorX<double> q = pose(loaded.model, static_cast<std::uint64_t>(k) + 1);
+    VectorX<double> q = pose(loaded.model, static_cast<std::uint64_t>(k) + 1);
+    const reference::WitnessMatrices theirs = second == nullptr ? reference::WitnessMatrices() : second->matrices(loaded.model, loaded.robot, q);
     const Problem<double> problem = kinematics<double>(loaded.model, q);
     const Damping<double> none = Damping<double>::uniform(problem.structure->rows, 0);
     const reference::Sensitivity sensitivity(problem, none);
     const reference::Dense<Quad>& ours = sensitivity.matrices();
     if (problem.structure->rows > 0) judge_operator(problem, none, sensitivity, out.apply);
-    if (witness == nullptr) continue;
-    const UrdfMatrices theirs = reference::urdf_matrices(*witness, loaded.model, "robot", q, welded);
-    raise(out.M, judged(ours.M, theirs.M, theirs.M_bound, "M"));
-    raise(out.J, judged(ours.J, theirs.J, theirs.J_bound, "J"));
-    if (theirs.regular) raise(out.A, judged(ours.A0, theirs.A0, theirs.A_bound, "J M⁻¹ Jᵀ"));
+    if (second == nullptr) continue;
+    raise(out.M, worst_ratio(ours.M, theirs.M, theirs.M_bound));
+    raise(out.J, worst_ratio(ours.J, theirs.J, theirs.J_bound));
+    if (theirs.regular) raise(out.A, worst_ratio(ours.A0, theirs.A0, theirs.A_bound));
+    out.rows = theirs.J.rows();
   }
 }
 
@@ -198,7 +180,20 @@ double moved_mass(const UrdfWitness& w, bool base_moves) {
   return mass;
 }
 
-void loaded_json(Loaded& loaded, UrdfWitness* witness, const SurveyOptions& o, json& j) {
+/// The second reading of a robot that loaded; null, with the reason in `not_compared`, where there is none.
+std::unique_ptr<SecondReading> second_of(const RobotOptions& options, json& j) {
+  try {
+    std::unique_ptr<SecondReading> out = second_reading(options);
+    if (out == nullptr) j["not_compared"] = "this build is without MuJoCo";
+    else j["moving"] = out->moves() ? 1 : 0;
+    return out;
+  } catch (const reference::NotServed& e) {
+    j["not_compared"] = e.what();
+    return nullptr;
+  }
+}
+
+void loaded_json(Loaded& loaded, const RobotOptions& options, const UrdfWitness* witness, const SurveyOptions& o, json& j) {
   j["state"] = "loads";
   j["bodies"] = loaded.model.bodies.size();
   j["dof"] = loaded.model.dofs();
@@ -211,25 +206,42 @@ void loaded_json(Loaded& loaded, UrdfWitness* witness, const SurveyOptions& o, j
   Ratios r;
   try {
     if (witness != nullptr) {
-      for (auto& joint : witness->joints)
-        if (joint.armature == 0 && o.armature >= 0) joint.armature = o.armature;
       const double theirs = moved_mass(*witness, !loaded.robot.root_joint.empty());
       if (std::fabs(mass - theirs) > laws::pass_below * unit_roundoff<double> * theirs * static_cast<double>(witness->links.size()))
         throw std::runtime_error(json(mass).dump() + " kg in the model, " + json(theirs).dump() + " kg in the file");
     }
-    compare(loaded, witness, o, r);
-    j["ratios"] = {{"M", number_json(r.M)}, {"J", number_json(r.J)}, {"A", number_json(r.A)}, {"apply", number_json(r.apply)}};
+    if (o.poses == 0) return;
+    const std::unique_ptr<SecondReading> second = second_of(options, j);
+    compare(loaded, second.get(), o, r);
+    j["ratios"] = {{"apply", number_json(r.apply)}};
+    if (second != nullptr) j["ratios"].update({{"M", number_json(r.M)}, {"J", number_json(r.J)}, {"A", number_json(r.A)}}), j["rows"] = r.rows;
     if (std::max({r.M, r.J, r.A, r.apply}) >= laws::pass_below) j["differs"] = "ratio " + json(number_json(std::max({r.M, r.J, r.A, r.apply}))).dump();
   } catch (const std::exception& e) {
     j["differs"] = e.what();
   }
 }
 
+/// "" or why the library that defines the format does not read the file either: MuJoCo is asked again, without our reader;
+/// libsdformat's words are in the refusal. What is no XML, or no robot, the second reading of SDF says.
+std::string library_says(const std::string& file, const std::string& why) {
+  if (why.find(": libsdformat: ") != std::string::npos) return "libsdformat does not read it";
+  try {
+    if (const std::string says = mujoco_refuses(file); !says.empty()) return "MuJoCo does not read it";
+    if (extension(file) == ".sdf") static_cast<void>(reference::read_sdf_witness(file));
+  } catch (const reference::NotServed&) {
+  } catch (const std::exception& e) {
+    return std::string("the second reading finds: ") + e.what();
+  }
+  return {};
+}
+
 /// Why a refusal is right without a look at the message, or null.
-json right(const json& j) {
+json right(const std::string& file, const json& j) {
   if (j.contains("urdfdom") && j["urdfdom"].is_string()) return "urdfdom does not read it";
   if (j.contains("urdfdom") && j["urdfdom"].is_object()) return "urdfdom drops a part of it: " + j["urdfdom"]["dropped"].get<std::string>().substr(0, 80);
   if (j.contains("regular") && !j["regular"]["free"].get<bool>() && !j["regular"]["fixed"].get<bool>()) return "M is singular or indefinite";
+  if (j.contains("urdfdom")) return nullptr;
+  if (const std::string says = library_says(file, j["why"].get<std::string>()); !says.empty()) return says;
   return nullptr;
 }
 
@@ -271,9 +283,10 @@ json survey_file(const std::string& file, const json& urdfdom, const SurveyOptio
   }
   const auto attempt = [&](RobotOptions::Base base, bool given) {
     try {
-      Loaded loaded = load(file, base, given, o);
+      const RobotOptions options = options_of(file, base, given, o);
+      Loaded loaded = load(options);
       j["base"] = loaded.robot.root_joint.empty() ? "fixed" : "free";
-      loaded_json(loaded, witness ? &*witness : nullptr, o, j);
+      loaded_json(loaded, options, witness ? &*witness : nullptr, o, j);
       return true;
     } catch (const ModelError& e) {
       j["state"] = "refused";
@@ -287,7 +300,7 @@ json survey_file(const std::string& file, const json& urdfdom, const SurveyOptio
   };
   const bool free = o.base != "fixed" && attempt(RobotOptions::Base::free, o.base == "free");
   if (!free && o.base != "free" && attempt(RobotOptions::Base::fixed, true) && o.base == "auto") j["free_base"] = j["kind"];
-  if (j["state"] == "refused") j["right"] = right(j);
+  if (j["state"] == "refused") j["right"] = right(file, j);
   return j;
 }
 

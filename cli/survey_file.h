@@ -20,7 +20,8 @@ struct SurveyOptions {
 [[nodiscard]] json urdfdom_says(const std::string& file);
 
 /// {file, state, …}, state one of
-///   loads      base, bodies, dof, mass, warnings: [{kind, text}], notes, ratios: {M, J, A, apply}
+///   loads      base, bodies, dof, mass, warnings: [{kind, text}], notes, ratios: {M, J, A, apply}, rows: of J;
+///              without a second reading: ratios: {apply}, not_compared: why
 ///   refused    why, kind (the message without names and numbers), right: a reason, or null: needs a look
 /// and for URDF: urdfdom (as given), witness (null, or why it does not read it),
 /// regular: {free, fixed} of M by the witness. A file that loads but is not what the witness reads has `differs`: what.

@@ -16,6 +16,7 @@
 
 #include "models/mesh.h"
 #include "models/message.h"
+#include "models/sdf_counts.h"
 
 namespace delassus {
 namespace {
@@ -122,6 +123,7 @@ class SdfReader {
     if (document.LoadFile(options_.file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) fail("file", "is no XML", "an SDF file");
     check_numbers(options_.file, *document.RootElement());
     leave_out(*document.RootElement());
+    check_counts(options_.file, *document.RootElement(), findings_);
     tinyxml2::XMLPrinter printer(nullptr, true);
     document.Print(&printer);
     const Listener listener;

@@ -114,10 +114,39 @@ const char* const sdf = R"(<?xml version="1.0"?>
 </sdf>
 )";
 
+/// Frames, a nested model, every joint type, loops.
+const char* const sdf_loops = R"(<?xml version="1.0"?>
+<sdf version="1.9">
+  <model name="m" canonical_link="base">
+    <pose>0.1 0 0 0 0 0.2</pose>
+    <frame name="f" attached_to="base"><pose>0 0.1 0.2 0.1 0.2 0.3</pose></frame>
+    <link name="base"><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.12</iyy><izz>0.13</izz><ixy>0.01</ixy></inertia></inertial></link>
+    <link name="a"><pose relative_to="ja">0 0 0.1 0 0.4 0</pose><inertial><pose>0.1 0 0 0 0.2 0</pose><mass>1.5</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    <link name="b"><pose relative_to="a">0.3 0 0 0 0 0</pose><inertial><mass>0.5</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    <link name="c"><pose>0.2 0.6 0 0 0 0</pose><inertial><mass>0.75</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    <link name="g"><pose>0 -0.5 0 0 0 0</pose><inertial><mass>0.25</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    <link name="h"><pose>0 -0.5 0.3 0 0 0</pose><inertial><mass>0.125</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    <model name="n"><pose relative_to="f">0.4 0 0 0 0 0</pose>
+      <link name="a"><inertial><mass>1</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>
+    </model>
+    <joint name="ja" type="revolute"><pose relative_to="f"/><parent>base</parent><child>a</child><axis><xyz expressed_in="base">0 0.6 0.8</xyz></axis></joint>
+    <joint name="jb" type="prismatic"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis></joint>
+    <joint name="jc" type="universal"><parent>base</parent><child>c</child><axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2></joint>
+    <joint name="jg" type="revolute"><parent>base</parent><child>g</child><axis><xyz>0 0 1</xyz></axis></joint>
+    <joint name="jh" type="continuous"><parent>base</parent><child>h</child><axis><xyz>0 0 1</xyz></axis></joint>
+    <joint name="gear" type="gearbox"><parent>g</parent><child>h</child><gearbox_ratio>2</gearbox_ratio><gearbox_reference_body>base</gearbox_reference_body>
+      <axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2></joint>
+    <joint name="jn" type="ball"><parent>b</parent><child>n::a</child></joint>
+    <joint name="pin" type="ball"><parent>c</parent><child>b</child></joint>
+    <joint name="hinge" type="revolute"><parent>h</parent><child>c</child><axis><xyz>0 0.8 0.6</xyz></axis></joint>
+  </model>
+</sdf>
+)";
+
 }  // namespace
 
 std::vector<FuzzText> fuzz_texts() {
-  return {{"urdf", arm}, {"urdf", gear}, {"yaml", scene}, {"json", spec()}, {"xml", mjcf}, {"sdf", sdf}};
+  return {{"urdf", arm}, {"urdf", gear}, {"yaml", scene}, {"json", spec()}, {"xml", mjcf}, {"sdf", sdf}, {"sdf", sdf_loops}};
 }
 
 }  // namespace delassus

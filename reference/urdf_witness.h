@@ -18,6 +18,7 @@
 
 #include "algorithms/model.h"
 #include "algorithms/scalars.h"
+#include "reference/witness_matrices.h"
 
 namespace delassus::reference {
 
@@ -59,18 +60,8 @@ struct UrdfWitness {
 [[nodiscard]] UrdfWitness parse_urdf_witness(const std::string& text);
 [[nodiscard]] UrdfWitness read_urdf_witness(const std::string& file);
 
-/// What a model of the file must say at q, and the bounds of the verdict. A rotation carries an error relative to s, the
-/// number of rotations it is the product of (joints from the tree's root on), a position one relative to s ℓ, ℓ the length
-/// of the path to it from the tree's reference point, hence for freedoms k, l
-///   M: Σ_i s_i (m_i v_ik v_il + |I_i| w_ik w_il) + armature,  v_ik = ℓ_i + ℓ_k, w_ik = 1 (turning) or v = 1, w = 0 (sliding)
-///   J: s_i for angular rows, s_i (ℓ_i + ℓ_k) or s_i for linear ones
-///   A: G|X| + |X|ᵀJ_bᵀ + ε G|M⁻¹|Gᵀ,  X = M⁻¹Jᵀ,  G = J_b + |X|ᵀ M_b (to second order: entries that cancel are no zeros)
-/// Zero bounds (a freedom that does not move the link) demand zeros.
-struct UrdfMatrices {
-  MatrixX<Quad> M, J, A0;
-  MatrixX<Quad> M_bound, J_bound, A_bound;
-  bool regular = false;   ///< M is positive definite; otherwise A0 and A_bound are empty
-};
+/// The number of rotations counts joints from the tree's root on.
+using UrdfMatrices = WitnessMatrices;
 
 /// M at q alone, when `welded` is empty and the file has no mimics. `robot` is the name before the slash in the model's
 /// names; a body whose joint is not in the file is the base, and moves its link as model.h says.

@@ -8,41 +8,13 @@
 
 #include "reference/definition.h"
 #include "reference/urdf_witness.h"
+#include "reference/witness_matrices.h"
 
 namespace delassus::reference {
 namespace {
 
 using Kind = UrdfWitness::Kind;
-using Real3 = Vector3<Quad>;
-using Real33 = Matrix3<Quad>;
-
-struct Transform {
-  Real33 R = Real33::Identity();
-  Real3 p = Real3::Constant(Quad(0));
-};
-Transform operator*(const Transform& a, const Transform& b) { return {Real33(a.R * b.R), Real3(a.R * b.p + a.p)}; }
-
-Real3 wide(const UrdfWitness::Triple& x) { return {Quad(x[0]), Quad(x[1]), Quad(x[2])}; }
-Quad length(const Real3& x) { return sqrt(Quad(x.dot(x))); }
-
-/// By angle t about a unit axis: 1 + sin t [a] + (1 − cos t) [a]².
-Real33 turned(const Real3& a, const Quad& t) {
-  Real33 K;
-  K << Quad(0), -a[2], a[1], a[2], Quad(0), -a[0], -a[1], a[0], Quad(0);
-  return Real33::Identity() + sin(t) * K + (Quad(1) - cos(t)) * Real33(K * K);
-}
-
-/// Fixed axes: roll about x, then pitch about y, then yaw about z.
-Real33 of_rpy(const UrdfWitness::Triple& rpy) {
-  return turned(Real3(0, 0, 1), rpy[2]) * turned(Real3(0, 1, 0), rpy[1]) * turned(Real3(1, 0, 0), rpy[0]);
-}
-
-Real33 of_quaternion(const Quad& w, const Real3& v) {
-  const Quad n = w * w + v.dot(v);
-  Real33 K;
-  K << Quad(0), -v[2], v[1], v[2], Quad(0), -v[0], -v[1], v[0], Quad(0);
-  return Real33::Identity() + (Quad(2) / n) * Real33(w * K + K * K);
-}
+using namespace witness;
 
 Transform placed(const UrdfWitness::Triple& xyz, const UrdfWitness::Triple& rpy) { return {of_rpy(rpy), wide(xyz)}; }
 Transform placed(const Pose<double>& x) { return {x.rotation.cast<Quad>(), x.translation.cast<Quad>()}; }
@@ -76,20 +48,6 @@ Index freedoms(Kind kind) {
     default: return 1;
   }
 }
-
-/// One freedom: the velocity of a point x on what it moves is v + w × (x − o).
-struct Freedom {
-  Real3 w = Real3::Constant(Quad(0)), v = Real3::Constant(Quad(0)), o = Real3::Constant(Quad(0));
-  Quad reach;          ///< ℓ of o
-  bool turns = false;
-};
-
-struct Placed {
-  Transform X;
-  Quad reach;                     ///< ℓ of the origin
-  Quad steps = Quad(1);           ///< s: factors of the product of rotations that X.R is
-  std::vector<Index> freedoms;    ///< that move it
-};
 
 class Mechanism {
  public:
@@ -259,43 +217,13 @@ void Mechanism::mass_matrix(MatrixX<Quad>& M, MatrixX<Quad>& bound) const {
   M = bound = MatrixX<Quad>::Constant(dofs_, dofs_, Quad(0));
   for (std::size_t i = 0; i < at_.size(); ++i) {
     const UrdfWitness::Link& l = w_.links[i];
-    const Transform X = at_[i].X * placed(l.com, l.rpy);
-    const Quad reach = at_[i].reach + length(wide(l.com)), mass(l.mass);
-    const auto& v = l.inertia;
-    Real33 I;
-    I << Quad(v[0]), Quad(v[1]), Quad(v[2]), Quad(v[1]), Quad(v[3]), Quad(v[4]), Quad(v[2]), Quad(v[4]), Quad(v[5]);
-    const Real33 world = X.R * I * X.R.transpose();
-    Quad size(0);
-    for (Index k = 0; k < 9; ++k) size += I(k / 3, k % 3) * I(k / 3, k % 3);
-    size = sqrt(size);
-    for (const Index a : at_[i].freedoms) {
-      const Freedom& fa = freedom_[static_cast<std::size_t>(a)];
-      const Real3 va = fa.v + fa.w.cross(Real3(X.p - fa.o)), Ia = world * fa.w;
-      const Quad ba = fa.turns ? reach + fa.reach : Quad(1);
-      for (const Index b : at_[i].freedoms) {
-        const Freedom& fb = freedom_[static_cast<std::size_t>(b)];
-        const Real3 vb = fb.v + fb.w.cross(Real3(X.p - fb.o));
-        M(a, b) += mass * va.dot(vb) + Ia.dot(fb.w);
-        bound(a, b) += at_[i].steps * (abs(mass) * ba * (fb.turns ? reach + fb.reach : Quad(1)) + (fa.turns && fb.turns ? size : Quad(0)));
-      }
-    }
+    add_link({l.mass, placed(l.com, l.rpy), l.inertia}, at_[i], freedom_, M, bound);
   }
   for (const Mover& m : movers_)
     for (Index k = 0; k < freedoms(m.kind); ++k) M(m.dof + k, m.dof + k) += Quad(m.armature), bound(m.dof + k, m.dof + k) += Quad(m.armature);
 }
 
-void Mechanism::weld(Index i, Index r, MatrixX<Quad>& J, MatrixX<Quad>& bound) const {
-  const Placed& at = at_[static_cast<std::size_t>(i)];
-  for (const Index a : at.freedoms) {
-    const Freedom& f = freedom_[static_cast<std::size_t>(a)];
-    const Real3 angular = at.X.R.transpose() * f.w;
-    const Real3 linear = at.X.R.transpose() * Real3(f.v + f.w.cross(Real3(at.X.p - f.o)));
-    for (Index k = 0; k < 3; ++k) {
-      J(r + k, a) = angular[k], J(r + 3 + k, a) = linear[k];
-      bound(r + k, a) = f.turns ? at.steps : Quad(0), bound(r + 3 + k, a) = at.steps * (f.turns ? at.reach + f.reach : Quad(1));
-    }
-  }
-}
+void Mechanism::weld(Index i, Index r, MatrixX<Quad>& J, MatrixX<Quad>& bound) const { add_weld(at_[static_cast<std::size_t>(i)], freedom_, r, J, bound); }
 
 void Mechanism::mimic(Index link, Index master, double multiplier, Index r, MatrixX<Quad>& J, MatrixX<Quad>& bound) const {
   for (const auto& [i, coefficient] : {std::pair<Index, double>{link, 1}, {master, -multiplier}}) {
@@ -321,25 +249,6 @@ std::vector<MimicRow> mimics_of(const UrdfWitness& w, const Mechanism& mechanism
     if (freedoms(mechanism.kind(j.child)) == 1 && freedoms(mechanism.kind(master->second)) == 1) out.push_back({j.child, master->second, j.multiplier});
   }
   return out;
-}
-
-MatrixX<Quad> magnitudes(MatrixX<Quad> X) {
-  for (Index j = 0; j < X.cols(); ++j)
-    for (Index i = 0; i < X.rows(); ++i) X(i, j) = abs(X(i, j));
-  return X;
-}
-
-/// A0 and its bound from M and J.
-void couple(UrdfMatrices& out) {
-  const PivotedLdlt<Quad> factor(out.M);
-  out.regular = factor.regular();
-  if (!out.regular) return;
-  const MatrixX<Quad> X = factor.solve(out.J.transpose()), size = magnitudes(X);
-  out.A0 = product(out.J, X);
-  const MatrixX<Quad> of_J = product(out.J_bound, size);
-  const MatrixX<Quad> both = out.J_bound + product(MatrixX<Quad>(size.transpose()), out.M_bound);
-  const MatrixX<Quad> second = product(both, product(magnitudes(factor.inverse()), MatrixX<Quad>(both.transpose())));
-  out.A_bound = MatrixX<Quad>(of_J.transpose()) + product(both, size) + Quad(unit_roundoff<double>) * second;
 }
 
 }  // namespace

@@ -250,6 +250,8 @@ TEST(Sdf, says_what_it_cannot_read) {
   const std::string a = "<link name='a'>" + inertial(1) + "</link>";
   refused(sdf("<link name='a'><inertial><mass>2kg</mass></inertial></link>"), "\"2kg\" is not finite");
   refused(sdf("<link name='a'><inertial><mass>1e999</mass></inertial></link>"), "1e999");
+  refused(sdf("<link name='a'><inertial><mass>1 2</mass></inertial></link>"), "holds 2 numbers: \"1 2\" (accepted: 1 number)");
+  refused(sdf("<link name='a'><pose>1 2 3</pose>" + inertial(1) + "</link>"), "holds 3 numbers");
   refused(sdf(a + "<joint name='j' type='revolute'><parent>a</parent><child>nobody</child><axis><xyz>0 0 1</xyz></axis></joint>"), "nobody");
   refused(sdf(a + a), "a");
   refused(sdf(""), "libsdformat");
@@ -267,6 +269,11 @@ TEST(Sdf, says_what_it_cannot_read) {
   const Robot r = read(write("sdf/include.sdf", "<sdf version='1.9'><world name='w'><include><uri>model://no_such_model</uri></include><model name='m'>" + a + "</model></world></sdf>"), model);
   ASSERT_FALSE(r.warnings.empty());
   EXPECT_EQ(r.warnings[0].kind, "include not found");
+  Model twice;  // libsdformat takes the first in silence
+  const Robot first = read(write("sdf/twice.sdf", sdf("<link name='a'><inertial><mass>2</mass><mass>3</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>")), twice);
+  ASSERT_EQ(first.warnings.size(), 1u);
+  EXPECT_EQ(first.warnings[0].kind, "given twice");
+  EXPECT_EQ(twice.bodies[0].mass, 2);
   RobotOptions strict;
   strict.strict = true;
   EXPECT_THROW((void)read(temporary("sdf/include.sdf").string(), model, strict), ModelError);
