@@ -101,6 +101,7 @@ void MjcfWitness::State::set_joint(int j, const double* q, Index first) {
 MjcfWitness::MjcfWitness(const std::string& file, const std::string& text, const Pose<double>& pose,
                          const std::map<std::string, Matrix3<double>>& full_inertia)
     : state_(std::make_unique<State>()) {
+  mju_user_warning = [](const char*) {};  // otherwise MuJoCo writes a log file; `set` looks at the counts
   State& s = *state_;
   s.m = compile(file, text);
   s.pose = pose;
