@@ -22,21 +22,12 @@
 namespace delassus {
 
 // Arrays of numbers go on to the next multiple of eight, so that they can be read in lanes.
-using UnalignedLanes8 = double __attribute__((vector_size(64), aligned(8)));
-
-[[nodiscard]] inline double total(const Lanes8& x) {
-  const auto four = __builtin_shufflevector(x, x, 0, 1, 2, 3) + __builtin_shufflevector(x, x, 4, 5, 6, 7);
-  const auto two = __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
-  return two[0] + two[1];
-}
 
 /// xᵀ y; one of them is zero from `count` to the next multiple of eight.
 template <class T> [[nodiscard]] inline T inner(const T* x, const T* y, int count) {
   if constexpr (std::is_same_v<T, double>) {
-    const auto* const xs = reinterpret_cast<const UnalignedLanes8*>(x);
-    const auto* const ys = reinterpret_cast<const UnalignedLanes8*>(y);
     Lanes8 products{};
-    for (int k = 0; k < (count + 7) / 8; ++k) products += xs[k] * ys[k];
+    for (int k = 0; k < count; k += 8) products += load_lanes(x + k) * load_lanes(y + k);
     return total(products);
   } else {
     T sum(0);
@@ -49,9 +40,7 @@ template <class T> [[nodiscard]] inline T inner(const T* x, const T* y, int coun
 template <class T> inline void reflect(T* x, const T* v, const T& beta, int count) {
   const T factor = inner(x, v, count) * beta;
   if constexpr (std::is_same_v<T, double>) {
-    auto* const xs = reinterpret_cast<UnalignedLanes8*>(x);
-    const auto* const vs = reinterpret_cast<const UnalignedLanes8*>(v);
-    for (int k = 0; k < (count + 7) / 8; ++k) xs[k] -= vs[k] * factor;
+    for (int k = 0; k < count; k += 8) store_lanes(x + k, load_lanes(x + k) - load_lanes(v + k) * factor);
   } else {
     for (int r = 0; r < count; ++r) x[r] -= factor * v[r];
   }
@@ -70,8 +59,8 @@ template <class T> inline void reflect(Six<T>* rows, const T* v, const T& beta, 
   for (int r = 0; r < count; ++r) subtract_scaled(rows[r], even, v[r]);
 }
 
-template <int... lane> inline void keep_larger(Lanes8& value, Lanes8& index) {
-  const Lanes8 other = __builtin_shufflevector(value, value, lane...), at = __builtin_shufflevector(index, index, lane...);
+template <int... lane> inline void keep_larger(Lanes4& value, Lanes4& index) {
+  const Lanes4 other = picked<lane...>(value, value), at = picked<lane...>(index, index);
   index = other > value ? at : index;
   value = other > value ? other : value;
 }
@@ -80,18 +69,19 @@ template <int... lane> inline void keep_larger(Lanes8& value, Lanes8& index) {
 template <class T> [[nodiscard]] inline int largest_entry(const T* v, int count) {
   using std::abs;
   if constexpr (std::is_same_v<T, double>) {
-    const auto* const vs = reinterpret_cast<const UnalignedLanes8*>(v);
-    const auto magnitude = [&](int k) { const Lanes8 x = vs[k]; return Lanes8(x < 0 ? -x : x); };
-    Lanes8 best = magnitude(0), index{0, 1, 2, 3, 4, 5, 6, 7}, here = index;  // by lane: the largest, and where it is
-    for (int k = 1; k < (count + 7) / 8; ++k) {
-      const Lanes8 next = magnitude(k);
-      here += 8;
+    const auto magnitude = [&](int k) {
+      const Lanes4 x = reinterpret_cast<const UnalignedLanes4*>(v + k)[0];
+      return Lanes4(x < 0 ? -x : x);
+    };
+    Lanes4 best = magnitude(0), index{0, 1, 2, 3}, here = index;  // by lane: the largest, and where it is
+    for (int k = 4; k < count; k += 4) {
+      const Lanes4 next = magnitude(k);
+      here += 4;
       index = next > best ? here : index;
       best = next > best ? next : best;
     }
-    keep_larger<4, 5, 6, 7, 0, 1, 2, 3>(best, index);
-    keep_larger<2, 3, 0, 1, 6, 7, 4, 5>(best, index);
-    keep_larger<1, 0, 3, 2, 5, 4, 7, 6>(best, index);
+    keep_larger<2, 3, 0, 1>(best, index);
+    keep_larger<1, 0, 3, 2>(best, index);
     return static_cast<int>(index[0]);
   } else {
     int largest = 0;
@@ -103,23 +93,18 @@ template <class T> [[nodiscard]] inline int largest_entry(const T* v, int count)
 
 /// The entries c of eight rows, for six c. Rows from `count` on are taken for zero.
 inline void columns_of_eight(const Six<double>* rows, int count, Lanes8 (&column)[6]) {
-  Lanes8 r[8], t[8], u[8];
-  for (int k = 0; k < 8; ++k) r[k] = k < count ? rows[k].v : Lanes8{};
-  for (int k = 0; k < 8; k += 2) {  // of two rows: entries 0 2 4, entries 1 3 5
-    t[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-    t[k + 1] = __builtin_shufflevector(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  Lanes4 low[2][4], high[2][4];  // of rows 0…3 and 4…7: entries 0…3, and 4 and 5
+  for (int k = 0; k < 8; ++k) {
+    const Lanes8 row = k < count ? rows[k].v : Lanes8{};
+    low[k / 4][k % 4] = lower(row);
+    high[k / 4][k % 4] = upper(row);
   }
-  for (int k = 0; k < 8; k += 4)  // of four rows: entries 0 4, 2, 1 5, 3
-    for (int odd = 0; odd < 2; ++odd) {
-      u[k + 2 * odd] = __builtin_shufflevector(t[k + odd], t[k + 2 + odd], 0, 1, 8, 9, 4, 5, 12, 13);
-      u[k + 2 * odd + 1] = __builtin_shufflevector(t[k + odd], t[k + 2 + odd], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  for (int c = 0; c < 4; ++c) {
-    const int from = c % 2 * 2 + c / 2;
-    column[c] = __builtin_shufflevector(u[from], u[from + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+  for (int half = 0; half < 2; ++half) {
+    transpose_four(low[half]);
+    transpose_four(high[half]);
   }
-  for (int odd = 0; odd < 2; ++odd)
-    column[4 + odd] = __builtin_shufflevector(u[2 * odd], u[2 * odd + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  for (int c = 0; c < 4; ++c) column[c] = joined(low[0][c], low[1][c]);
+  for (int c = 0; c < 2; ++c) column[4 + c] = joined(high[0][c], high[1][c]);
 }
 
 /// x_k[r] = rows[r]ᵀ matrix[k] for r < count, zero from there to the stride; x_k at x + k · stride.
@@ -131,7 +116,7 @@ template <class T> inline void multiply(const Six<T>* rows, int count, const Six
       for (int k = 0; k < columns; ++k) {
         Lanes8 sum = entries[0] * matrix[k][0];
         for (int c = 1; c < 6; ++c) sum += entries[c] * matrix[k][c];
-        *reinterpret_cast<UnalignedLanes8*>(x + k * stride + r) = sum;
+        store_lanes(x + k * stride + r, sum);
       }
     } else {
       for (int k = 0; k < columns; ++k)
@@ -146,7 +131,7 @@ template <class T> inline void transpose(const Six<T>* rows, int count, T* x, In
     if constexpr (std::is_same_v<T, double>) {
       Lanes8 entries[6];
       columns_of_eight(rows + r, count - r, entries);
-      for (int c = 0; c < 6; ++c) *reinterpret_cast<UnalignedLanes8*>(x + c * stride + r) = entries[c];
+      for (int c = 0; c < 6; ++c) store_lanes(x + c * stride + r, entries[c]);
     } else {
       for (int c = 0; c < 6; ++c)
         for (int q = r; q < r + 8; ++q) x[c * stride + q] = q < count ? rows[q][c] : T(0);

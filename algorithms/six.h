@@ -1,6 +1,6 @@
 // The kit the recursions are written on: a 6-vector and a 6×6 matrix of six columns.
 //
-//   Six<T>       six numbers; Six<double> is one 8-lane vector whose last two lanes hold 0
+//   Six<T>       six numbers; Six<double> is eight lanes (lanes.h) whose last two hold 0
 //   SixBySix<T>  six Six columns
 //   Lanes<T>     eight right-hand sides side by side: the value type V of a sweep over eight columns
 //
@@ -10,17 +10,11 @@
 
 #include <type_traits>
 
-#ifdef __AVX512F__
-#include <immintrin.h>
-#endif
-
+#include "algorithms/lanes.h"
 #include "algorithms/scalars.h"
 #include "algorithms/spatial.h"
 
 namespace delassus {
-
-using Lanes8 = double __attribute__((vector_size(64)));
-using Lanes8f = float __attribute__((vector_size(32)));
 
 /// Eight columns at once where the scalar has vector instructions; void elsewhere.
 template <class T> struct LanesOf { using type = void; };
@@ -44,13 +38,8 @@ template <> struct Six<double> {
 /// The six numbers from x on.
 template <class T> [[nodiscard]] inline Six<T> load(const T* x) {
   Six<T> y;
-  if constexpr (std::is_same_v<T, double>) {
-#ifdef __AVX512F__
-    y.v = _mm512_maskz_loadu_pd(0x3f, x);
-#else
-    y.v = Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
-#endif
-  } else for (int k = 0; k < 6; ++k) y.v[k] = x[k];
+  if constexpr (std::is_same_v<T, double>) y.v = load_six(x);
+  else for (int k = 0; k < 6; ++k) y.v[k] = x[k];
   return y;
 }
 
@@ -112,10 +101,7 @@ template <class T> [[nodiscard]] inline Six<T> negated(const Six<T>& x) {
 /// xᵀ y
 template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Six<V>& y) {
   if constexpr (std::is_same_v<V, double>) {
-    const Lanes8 p = lanes(x) * y.v;
-    const auto four = __builtin_shufflevector(p, p, 0, 1, 2, 3) + __builtin_shufflevector(p, p, 4, 5, 6, 7);
-    const auto two = __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
-    return two[0] + two[1];
+    return total(lanes(x) * y.v);
   } else {
     V sum = x[0] * y.v[0];
     for (int k = 1; k < 6; ++k) sum += x[k] * y.v[k];
@@ -131,21 +117,17 @@ template <class T, class V> [[nodiscard]] inline Six<V> product(const Six<T>& x,
   return p;
 }
 
-/// Entries picked from a and b, eight lanes: 0…7 are a's, 8…15 b's.
-template <int... lane> [[nodiscard]] inline Six<double> picked(const Six<double>& a, const Six<double>& b) {
-  return {__builtin_shufflevector(a.v, b.v, lane...)};
+/// What is left of x when its halves are added.
+[[nodiscard, gnu::always_inline]] inline Lanes4 folded(const Six<double>& x) { return lower(x.v) + upper(x.v); }
+template <int... lane> [[nodiscard, gnu::always_inline]] inline Lanes4 picked(const Lanes4& a, const Lanes4& b) {
+  return __builtin_shufflevector(a, b, lane...);
 }
-/// sum[r] = Σ_k p[r][k] for four of them at once.
+[[nodiscard, gnu::always_inline]] inline Lanes4 added(const Lanes4& x, const Lanes4& y) { return x + y; }
+/// sum[r] = Σ_k p[r][k] for four of them at once, in the order of total().
 template <class V> [[gnu::always_inline]] inline void sums_in_lanes(const Six<V> (&p)[4], V (&sum)[4]) {
-  const auto pairs = [](const Six<V>& a, const Six<V>& b) {  // a0 + a1, b0 + b1, a2 + a3, b2 + b3, …
-    Six<V> s = picked<0, 8, 2, 10, 4, 12, 6, 14>(a, b);
-    add(s, picked<1, 9, 3, 11, 5, 13, 7, 15>(a, b));
-    return s;
-  };
-  const Six<V> t = pairs(p[0], p[1]), u = pairs(p[2], p[3]);
-  Six<V> s = picked<0, 1, 8, 9, 4, 5, 12, 13>(t, u);
-  add(s, picked<2, 3, 10, 11, 6, 7, 14, 15>(t, u));
-  add(s, picked<4, 5, 6, 7, 0, 1, 2, 3>(s, s));
+  const auto pairs = [](const auto& a, const auto& b) { return added(picked<0, 1, 4, 5>(a, b), picked<2, 3, 6, 7>(a, b)); };
+  const auto t = pairs(folded(p[0]), folded(p[1])), u = pairs(folded(p[2]), folded(p[3]));
+  const auto s = added(picked<0, 2, 4, 6>(t, u), picked<1, 3, 5, 7>(t, u));
   for (int r = 0; r < 4; ++r) sum[r] = s[r];
 }
 /// The same for the first `count` of them; the others must be zero.
@@ -178,7 +160,14 @@ template <class T> inline void add(SixBySix<T>& y, const SixBySix<T>& x) {
   for (int c = 0; c < 6; ++c) add(y.column[c], x.column[c]);
 }
 template <class T> [[nodiscard]] inline SixBySix<T> transposed(const SixBySix<T>& x) {
-  SixBySix<T> y = SixBySix<T>::zero();
+  SixBySix<T> y;
+  if constexpr (std::is_same_v<T, double>) {
+    Lanes8 r[6];
+    for (int c = 0; c < 6; ++c) r[c] = x.column[c].v;
+    transpose_six(r);
+    for (int c = 0; c < 6; ++c) y.column[c].v = r[c];
+    return y;
+  }
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r < 6; ++r) y.column[c].v[r] = x.column[r].v[c];
   return y;

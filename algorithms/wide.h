@@ -26,16 +26,6 @@ template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> two_sum(con
   const R s = a + b, bb = s - a;
   return {s, (a - (s - bb)) + (b - bb)};
 }
-[[nodiscard]] inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
-[[nodiscard, gnu::always_inline]] inline Lanes8 fused(const Lanes8& a, const Lanes8& b, const Lanes8& c) {
-#ifdef __AVX512F__  // g++ 12 takes the loop apart
-  return _mm512_fmadd_pd(a, b, c);
-#else
-  Lanes8 d;
-  for (int l = 0; l < 8; ++l) d[l] = __builtin_fma(a[l], b[l], c[l]);
-  return d;
-#endif
-}
 /// x (y.hi + y.lo) as value + error, to eps² of it.
 template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> product(const R& x, const R& hi, const R& lo) {
   const R p = x * hi;
@@ -80,8 +70,20 @@ template <> struct Six<DoubleDouble> {
   const auto p = product(x.v, y.hi, y.lo);
   return {p.value, p.error};
 }
-template <int... lane> [[nodiscard]] inline Six<DoubleDouble> picked(const Six<DoubleDouble>& a, const Six<DoubleDouble>& b) {
-  return {__builtin_shufflevector(a.hi, b.hi, lane...), __builtin_shufflevector(a.lo, b.lo, lane...)};
+/// Four unevaluated sums.
+struct DoubleDouble4 {
+  Lanes4 hi, lo;
+  DoubleDouble operator[](int k) const { return {hi[k], lo[k]}; }
+};
+[[nodiscard, gnu::always_inline]] inline DoubleDouble4 added(const DoubleDouble4& x, const DoubleDouble4& y) {
+  const auto s = two_sum(x.hi, y.hi);
+  return {s.value, s.error + (x.lo + y.lo)};
+}
+[[nodiscard, gnu::always_inline]] inline DoubleDouble4 folded(const Six<DoubleDouble>& x) {
+  return added({lower(x.hi), lower(x.lo)}, {upper(x.hi), upper(x.lo)});
+}
+template <int... lane> [[nodiscard, gnu::always_inline]] inline DoubleDouble4 picked(const DoubleDouble4& a, const DoubleDouble4& b) {
+  return {picked<lane...>(a.hi, b.hi), picked<lane...>(a.lo, b.lo)};
 }
 inline void sums(const Six<DoubleDouble> (&p)[4], DoubleDouble (&sum)[4], Index) { sums_in_lanes(p, sum); }
 
