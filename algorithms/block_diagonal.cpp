@@ -6,20 +6,6 @@
 
 namespace delassus {
 
-template <class T> void Damping<T>::check_sizes(const Structure& s) const {
-  require(static_cast<Index>(diagonal.size()) == s.rows, "Damping: the diagonal must have one entry per row");
-  Index next = 0;
-  for (const Block& b : blocks) {
-    require(b.R_inverse.rows() == b.R_inverse.cols() && b.R_inverse.rows() > 0, "Damping: a block must be square, and not empty");
-    require(b.row >= next && b.row + b.R_inverse.rows() <= s.rows, "Damping: blocks must be disjoint, ascending and within the rows");
-    next = b.row + b.R_inverse.rows();
-    const auto holds = [&](const auto& c) { return b.row >= c.row && next <= c.row + c.rows; };
-    require(std::any_of(s.link_constraints.begin(), s.link_constraints.end(), holds) ||
-                std::any_of(s.joint_constraints.begin(), s.joint_constraints.end(), holds),
-            "Damping: a block must lie within the rows of one constraint");
-  }
-}
-
 template <class T> void BlockDiagonal<T>::analyze(const Structure& s) {
   rows_.clear();
   first_.clear();
@@ -95,9 +81,7 @@ template <class T> Index BlockDiagonal<T>::bytes() const {
                             rows_.size() * (sizeof(Rows) + sizeof(Index) + 1) + constraint_of_.size() * sizeof(Index));
 }
 
-#define DELASSUS_INSTANTIATE(T) \
-  template class BlockDiagonal<T>;    \
-  template void Damping<T>::check_sizes(const Structure&) const;
+#define DELASSUS_INSTANTIATE(T) template class BlockDiagonal<T>;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 template class BlockDiagonal<Stochastic>;
 

@@ -21,6 +21,7 @@ template <class T> [[nodiscard]] Index columns_workspace(Index m, Index values, 
   if (a.ok() && !b.ok()) {
     a.status = b.status;
     a.where = b.where;
+    a.of_A = b.of_A;
   }
   a.iterations = std::max(a.iterations, b.iterations);
   a.backward_error = std::max(a.backward_error, b.backward_error);

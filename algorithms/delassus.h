@@ -13,6 +13,7 @@
 #include <limits>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "algorithms/problem.h"
@@ -24,12 +25,21 @@ namespace delassus {
 template <class T> using ConstRef = const Eigen::Ref<const MatrixX<T>, 0, Eigen::OuterStride<>>&;
 template <class T> using Ref = Eigen::Ref<MatrixX<T>, 0, Eigen::OuterStride<>>;
 
-/// Scratch memory of apply and solve; its contents never matter. Allocated by its constructor only.
+/// Scratch memory of apply and solve; its contents never matter. Allocated by its constructor only. One per thread: it moves,
+/// but is not copied.
 template <class T> class Workspace {
  public:
   explicit Workspace(Index scalars);
-  /// A part of another one.
-  Workspace(T* begin, Index scalars) : begin_(begin), size_(scalars) {}
+  /// A part of another one, from a multiple of eight scalars (at most 64 bytes) on. @throws std::logic_error where it is not.
+  Workspace(T* begin, Index scalars);
+  Workspace(Workspace&& other) noexcept
+      : storage_(std::move(other.storage_)), begin_(std::exchange(other.begin_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  Workspace& operator=(Workspace&& other) noexcept {
+    std::swap(storage_, other.storage_);
+    std::swap(begin_, other.begin_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
   [[nodiscard]] T* data() { return begin_; }
   [[nodiscard]] Index size() const { return size_; }
   void fill(const T& value) { std::fill(begin_, begin_ + size_, value); }
@@ -52,14 +62,19 @@ struct Accuracy {
 
 template <class T> class Operator {
  public:
+  Operator() = default;
+  Operator(const Operator&) = delete;  // what it made in analyze points into itself
+  Operator& operator=(const Operator&) = delete;
   virtual ~Operator() = default;
 
-  /// Symbolic phase: elimination order, fill, layout. Allocates everything. @throws ModelError for a bad structure.
+  /// Symbolic phase: elimination order, fill, layout. Allocates everything. @throws ModelError for a bad structure; after any
+  /// exception the operator is as if never analysed.
   void analyze(std::shared_ptr<const Structure> structure);
-  /// Numeric phase at a configuration. @throws std::logic_error before analyze or with another structure.
-  Report update(const Problem<T>& problem, const Damping<T>& damping);
+  /// Numeric phase at a configuration. bad_damping: R⁻¹ cannot be right (Damping::judged); apply and solve then say so too,
+  /// until update_damping gives another. @throws std::logic_error before analyze or with another structure.
+  [[nodiscard]] Report update(const Problem<T>& problem, const Damping<T>& damping);
   /// Numeric phase at a new damping; everything that does not depend on it is kept.
-  Report update_damping(const Damping<T>& damping);
+  [[nodiscard]] Report update_damping(const Damping<T>& damping);
 
   /// a = A f. Shapes m×k; f and a must not overlap. NaN in ⇒ NaN out.
   [[nodiscard]] Report apply(ConstRef<T> f, Ref<T> a, Workspace<T>& workspace) const;
@@ -91,10 +106,11 @@ template <class T> class Operator {
   [[nodiscard]] virtual Index do_bytes() const = 0;
 
  private:
-  void check(Index rows, Index columns, Index out_rows, Index out_columns, const T* in, const T* out,
-             const Workspace<T>& w) const;
+  void check(ConstRef<T> in, Ref<T> out, const Workspace<T>& w) const;
   std::shared_ptr<const Structure> structure_;
   bool updated_ = false;
+  std::vector<T> scratch_;  // the largest block
+  Report damping_;          // bad_damping, or ok
 };
 
 /// How the rounding error of a function grows; the laws pick their bound from it (docs/verification.md).
@@ -122,7 +138,11 @@ struct OperatorRow {
              Maker<PrimeField>>
       makers;  ///< nullptr where a scalar is not served
 
-  template <class T> [[nodiscard]] std::unique_ptr<Operator<T>> make() const { return std::get<Maker<T>>(makers)(); }
+  /// @throws std::logic_error where the scalar is not served.
+  template <class T> [[nodiscard]] std::unique_ptr<Operator<T>> make() const {
+    require(std::get<Maker<T>>(makers) != nullptr, "OperatorRow::make: this operator does not serve this scalar (delassus list operators)");
+    return std::get<Maker<T>>(makers)();
+  }
 };
 
 [[nodiscard]] const std::vector<OperatorRow>& operators();

@@ -84,7 +84,7 @@ template <class T> Report DenseCholesky<T>::do_update_damping(const Damping<T>& 
   for (const auto& c : s.joint_constraints) add_damping(c.row, c.rows);
   factor_ = A_;
   const Index lost = ldlt_factor(factor_.data(), s.rows, s.rows);
-  factored_A_ = lost < 0 ? Report{} : Report{Status::lost_pivot, lost};
+  factored_A_ = lost < 0 ? Report{} : Report{.status = Status::lost_pivot, .where = lost, .of_A = true};
   return {};  // apply is defined all the same; solve reports the lost pivot
 }
 

@@ -41,6 +41,7 @@ Report KktEliminationWith<T, policy>::do_update(const Problem<T>& problem, const
 // A = J M⁻¹Jᵀ + R⁻¹ = P ᵀL D Lᵀ P, as far as its rank goes
 template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& damping) {
+  dependent_.clear();
   if (!undamped_.ok()) return undamped_;
   refinement_.update_damping(damping);
   damping_.assign(damping);
@@ -59,7 +60,7 @@ Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& dampin
   std::sort(dependent_.begin(), dependent_.end());
   factored_ = {};
   for (const Index r : dependent_)  // a damped row never depends: this arithmetic cannot tell
-    if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {Status::lost_pivot, r};
+    if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {.status = Status::lost_pivot, .where = r, .of_A = true};
   trust_ = trust_in_factor();
   return {};  // apply is defined all the same; solve reports the lost pivot
 }

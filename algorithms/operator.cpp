@@ -1,4 +1,5 @@
 // The public layer of every operator: phases, shapes, aliasing, non-finite results. Nothing here touches the numerics.
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 
@@ -6,18 +7,35 @@
 
 namespace delassus {
 
+// What sweeps load at a time: eight scalars, but no more than 64 bytes.
+template <class T> inline constexpr std::size_t alignment =
+    std::is_trivially_copyable_v<T> && 64 % sizeof(T) == 0 ? std::min<std::size_t>(64, 8 * sizeof(T)) : alignof(T);
+
 template <class T> Workspace<T>::Workspace(Index scalars)
     : storage_(static_cast<std::size_t>(scalars) + 64 / sizeof(T) + 1), begin_(storage_.data()), size_(scalars) {
-  if constexpr (std::is_trivially_copyable_v<T> && 64 % sizeof(T) == 0)
+  if constexpr (alignment<T> > alignof(T))
     while (reinterpret_cast<std::uintptr_t>(begin_) % 64 != 0) ++begin_;
+}
+
+template <class T> Workspace<T>::Workspace(T* begin, Index scalars) : begin_(begin), size_(scalars) {
+  require(reinterpret_cast<std::uintptr_t>(begin) % alignment<T> == 0, "Workspace: memory must begin at a multiple of eight scalars, at most 64 bytes");
 }
 
 template <class T> void Operator<T>::analyze(std::shared_ptr<const Structure> structure) {
   require(structure != nullptr, "Operator::analyze: no structure");
   structure->validate();
-  structure_ = std::move(structure);
   updated_ = false;
-  do_analyze();
+  structure_ = std::move(structure);
+  try {
+    Index largest = 0;
+    for (const auto& c : structure_->link_constraints) largest = std::max(largest, c.rows);
+    for (const auto& c : structure_->joint_constraints) largest = std::max(largest, c.rows);
+    scratch_.assign(static_cast<std::size_t>(largest * largest), T(0));
+    do_analyze();
+  } catch (...) {
+    structure_ = nullptr;
+    throw;
+  }
 }
 
 template <class T> Report Operator<T>::update(const Problem<T>& problem, const Damping<T>& damping) {
@@ -26,23 +44,30 @@ template <class T> Report Operator<T>::update(const Problem<T>& problem, const D
   problem.check_sizes();
   damping.check_sizes(*structure_);
   updated_ = true;
-  return do_update(problem, damping);
+  const Report updated = do_update(problem, damping);
+  damping_ = damping.judged(scratch_);
+  return damping_.ok() ? updated : damping_;
 }
 
 template <class T> Report Operator<T>::update_damping(const Damping<T>& damping) {
   require(updated_, "Operator::update_damping: call update first");
   damping.check_sizes(*structure_);
-  return do_update_damping(damping);
+  const Report updated = do_update_damping(damping);
+  damping_ = damping.judged(scratch_);
+  return damping_.ok() ? updated : damping_;
 }
 
 template <class T>
-void Operator<T>::check(Index rows, Index columns, Index out_rows, Index out_columns, const T* in, const T* out,
-                        const Workspace<T>& w) const {
+void Operator<T>::check(ConstRef<T> in, Ref<T> out, const Workspace<T>& w) const {
+  const Index rows = in.rows(), columns = in.cols();
   require(updated_, "Operator: call update before apply or solve");
-  require(rows == size() && out_rows == size(), "Operator: vectors must have as many rows as the operator");
-  require(columns == out_columns, "Operator: input and output must have the same number of columns");
+  require(rows == size() && out.rows() == size(), "Operator: vectors must have as many rows as the operator");
+  require(columns == out.cols(), "Operator: input and output must have the same number of columns");
   require(w.size() >= workspace(columns), "Operator: workspace too small (see Operator::workspace)");
-  require(rows * columns == 0 || in != out, "Operator: input and output must not overlap");
+  if (rows * columns == 0) return;
+  const T *const in_end = in.data() + (columns - 1) * in.outerStride() + rows, *const out_end = out.data() + (columns - 1) * out.outerStride() + rows;
+  const std::less_equal<const T*> before;
+  require(before(in_end, out.data()) || before(out_end, in.data()), "Operator: input and output must not overlap");
 }
 
 namespace {
@@ -69,23 +94,23 @@ template <class T> Report finished(Report report, ConstRef<T> in, Ref<T> out) {
 }  // namespace
 
 template <class T> Report Operator<T>::apply(ConstRef<T> f, Ref<T> a, Workspace<T>& w) const {
-  check(f.rows(), f.cols(), a.rows(), a.cols(), f.data(), a.data(), w);
+  check(f, a, w);
   if (f.size() == 0) return {};
-  return finished<T>(do_apply(f, a, w.data()), f, a);
+  return finished<T>(damping_.ok() ? do_apply(f, a, w.data()) : damping_, f, a);
 }
 
 template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Workspace<T>& w) const {
-  check(a.rows(), a.cols(), f.rows(), f.cols(), a.data(), f.data(), w);
+  check(a, f, w);
   if (a.size() == 0) return {};
-  return finished<T>(do_solve(a, f, w.data()), a, f);
+  return finished<T>(damping_.ok() ? do_solve(a, f, w.data()) : damping_, a, f);
 }
 
 template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Accuracy wanted, Workspace<T>& w) const {
-  check(a.rows(), a.cols(), f.rows(), f.cols(), a.data(), f.data(), w);
+  check(a, f, w);
   require(wanted.error >= 0, "Operator::solve: the wanted accuracy is negative or NaN");
   require(wanted.steps >= 0, "Operator::solve: the number of steps is negative");
   if (a.size() == 0) return {};
-  return finished<T>(do_solve_to(a, f, wanted, w.data()), a, f);
+  return finished<T>(damping_.ok() ? do_solve_to(a, f, wanted, w.data()) : damping_, a, f);
 }
 
 template <class T> Report Operator<T>::do_apply(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
@@ -103,7 +128,7 @@ template <class T> Index Operator<T>::workspace(Index columns) const {
 
 template <class T> Index Operator<T>::bytes() const {
   require(structure_ != nullptr, "Operator::bytes: call analyze first");
-  return do_bytes();
+  return do_bytes() + static_cast<Index>(scratch_.size() * sizeof(T));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class Workspace<T>; template class Operator<T>;

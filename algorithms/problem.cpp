@@ -85,63 +85,6 @@ std::vector<Eigen::Matrix<U, R, C>> convert(const std::vector<Eigen::Matrix<T, R
   return y;
 }
 
-/// Whether a symmetric matrix is positive semidefinite up to the rounding of its own elimination:
-/// every pivot ≥ −30 ε · size · (largest diagonal entry), and rows whose pivot vanishes vanish likewise.
-template <class T> bool positive_semidefinite(MatrixX<T> B) {
-  using std::abs;
-  const Index n = B.rows();
-  T largest(0);
-  for (Index i = 0; i < n; ++i) largest = std::max(largest, T(B(i, i)));
-  const T slack = scalar_cast<T>(30 * unit_roundoff<T> * static_cast<double>(n)) * largest;
-  for (Index k = 0; k < n; ++k) {
-    Index p = k;
-    for (Index i = k; i < n; ++i) {
-      if (B(i, i) < -slack) return false;
-      if (B(i, i) > B(p, p)) p = i;
-    }
-    if (!(B(p, p) > slack)) {
-      for (Index i = k; i < n; ++i)
-        for (Index j = k; j < i; ++j)
-          if (T(abs(B(i, j))) > slack) return false;
-      return true;
-    }
-    B.row(k).swap(B.row(p));
-    B.col(k).swap(B.col(p));
-    for (Index i = k + 1; i < n; ++i) {
-      const T factor = B(i, k) / B(k, k);
-      for (Index j = k + 1; j < n; ++j) B(i, j) -= factor * B(k, j);
-    }
-  }
-  return true;
-}
-
-template <class T> void check_block(const MatrixX<T>& B, const std::string& element) {
-  if (B.rows() != B.cols() || B.rows() == 0)
-    throw ModelError("", element, "matrix of " + std::to_string(B.rows()) + " x " + std::to_string(B.cols()),
-                     "a square matrix");
-  for (Index i = 0; i < B.rows(); ++i)
-    for (Index j = 0; j < B.cols(); ++j)
-      if (!finite(B(i, j))) throw ModelError("", element, "entry is not finite", "finite numbers [1/kg]");
-  for (Index i = 0; i < B.rows(); ++i)
-    for (Index j = 0; j < i; ++j)
-      if (!(B(i, j) == B(j, i)))
-        throw ModelError("", element,
-                         "entries (" + std::to_string(i) + "," + std::to_string(j) + ") and their transpose differ",
-                         "a symmetric matrix");
-  if (!positive_semidefinite<T>(B))
-    throw ModelError("", element, "matrix has a negative eigenvalue", "positive semidefinite [1/kg]");
-}
-
-/// For each row the first row of its constraint and that constraint's size.
-std::vector<std::pair<Index, Index>> row_owners(const Structure& s) {
-  std::vector<std::pair<Index, Index>> owner(static_cast<std::size_t>(s.rows));
-  for (const auto& e : s.link_constraints)
-    for (Index k = 0; k < e.rows; ++k) owner[e.row + k] = {e.row, e.rows};
-  for (const auto& e : s.joint_constraints)
-    for (Index k = 0; k < e.rows; ++k) owner[e.row + k] = {e.row, e.rows};
-  return owner;
-}
-
 }  // namespace
 
 Index Structure::add_body(Index parent_body, Index n) {
@@ -234,42 +177,6 @@ template <class T> template <class U> Problem<U> Problem<T>::cast() const {
   return p;
 }
 
-template <class T> void Damping<T>::multiply(const VectorX<T>& x, VectorX<T>& y) const {
-  require(x.size() == static_cast<Index>(diagonal.size()), "Damping: x does not have one entry per row");
-  require(&x != &y, "Damping: x and y are the same vector");
-  y.resize(x.size());
-  for (Index i = 0; i < x.size(); ++i) y[i] = diagonal[i] * x[i];
-  for (const Block& b : blocks)
-    for (Index j = 0; j < b.R_inverse.cols(); ++j)
-      for (Index i = 0; i < b.R_inverse.rows(); ++i) y[b.row + i] += b.R_inverse(i, j) * x[b.row + j];
-}
-
-template <class T> void Damping<T>::validate(const Structure& s) const {
-  if (static_cast<Index>(diagonal.size()) != s.rows)
-    throw ModelError("", "damping", std::to_string(diagonal.size()) + " entries",
-                     std::to_string(s.rows) + ", one per row");
-  for (Index i = 0; i < s.rows; ++i)
-    if (!finite(diagonal[i]) || diagonal[i] < T(0))
-      throw ModelError("", "damping of row " + std::to_string(i),
-                       std::to_string(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]");
-  if (blocks.empty()) return;
-  const auto owner = row_owners(s);
-  Index next = 0;
-  for (const Block& b : blocks) {
-    const std::string element = "damping block at row " + std::to_string(b.row);
-    check_block(b.R_inverse, element);
-    const Index size = b.R_inverse.rows();
-    if (b.row < next) throw ModelError("", element, "overlaps the block before it", "disjoint blocks in ascending order");
-    next = b.row + size;
-    if (next > s.rows || next > owner[b.row].first + owner[b.row].second)
-      throw ModelError("", element, std::to_string(size) + " rows reach beyond one constraint",
-                       "a block over rows of one constraint");
-    for (Index i = b.row; i < next; ++i)
-      if (!(diagonal[i] == T(0)))
-        throw ModelError("", element, "row " + std::to_string(i) + " also has a diagonal entry", "0 there");
-  }
-}
-
 template <class T> template <class U> Damping<U> Damping<T>::cast() const {
   Damping<U> d;
   d.diagonal = convert<U>(diagonal);
@@ -283,12 +190,8 @@ template <class T> template <class U> Damping<U> Damping<T>::cast() const {
   template Damping<U> Damping<T>::cast<U>() const;
 #define DELASSUS_CAST_FROM_DOUBLE(U) DELASSUS_CAST(double, U)
 #define DELASSUS_CAST_TO_DOUBLE(T) DELASSUS_CAST(T, double)
-#define DELASSUS_INSTANTIATE(T) \
-  template struct Problem<T>;   \
-  template struct Damping<T>;
-DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_INSTANTIATE)
-template struct Problem<PrimeField>;
-template void Damping<PrimeField>::multiply(const VectorX<PrimeField>&, VectorX<PrimeField>&) const;
+#define DELASSUS_INSTANTIATE(T) template struct Problem<T>;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_CAST_FROM_DOUBLE)
 DELASSUS_CAST_FROM_DOUBLE(Stochastic)
 DELASSUS_CAST_TO_DOUBLE(float)

@@ -16,6 +16,7 @@ enum class Status : std::uint8_t {
   ok,
   lost_pivot,        ///< a pivot was not positive: M (or M_R) is singular or indefinite in this arithmetic
   zero_damping,      ///< this form needs R⁻¹ > 0 and a row (or block) has a zero or singular one
+  bad_damping,       ///< R⁻¹ is negative, infinite or NaN in a row, or a block is not symmetric positive semidefinite
   not_converged,     ///< an iteration ended above its target; the result is the best iterate
   not_finite,        ///< NaN or infinity in the data or in the right-hand side
   inconsistent,      ///< A is singular and a is not in its range: dependent hard rows ask for different accelerations
@@ -27,6 +28,7 @@ enum class Status : std::uint8_t {
     case Status::ok: return "ok";
     case Status::lost_pivot: return "lost_pivot";
     case Status::zero_damping: return "zero_damping";
+    case Status::bad_damping: return "bad_damping";
     case Status::not_converged: return "not_converged";
     case Status::not_finite: return "not_finite";
     case Status::inconsistent: return "inconsistent";
@@ -38,7 +40,7 @@ enum class Status : std::uint8_t {
 /// What a numeric phase or a solve came to.
 struct Report {
   Status status = Status::ok;
-  std::int64_t where = -1;       ///< the row (zero_damping) or degree of freedom (lost_pivot) concerned, −1: none
+  std::int64_t where = -1;       ///< the row or degree of freedom concerned (see at_row), −1: none
   int iterations = 0;            ///< refinement or Krylov steps taken; of the ladder: on all rungs tried
   double backward_error = -1;    ///< normwise relative residual; −1: not computed
   double error_bound = -1;       ///< rigorous bound on the error, relative, in the energy norm; −1: not computed
@@ -46,8 +48,11 @@ struct Report {
   double rcond_estimate = -1;    ///< estimate of 1/κ; −1: not computed
   std::string_view rung = {};    ///< of the ladder: the operator that answered
   int rungs_tried = 0;           ///< of the ladder: how many operators it asked
+  bool of_A = false;             ///< lost_pivot: of A = J M⁻¹Jᵀ + R⁻¹, at a row; else of M or M + JᵀRJ, at a degree of freedom
 
   [[nodiscard]] bool ok() const { return status == Status::ok; }
+  /// Whether `where` counts rows of J; else it counts degrees of freedom.
+  [[nodiscard]] bool at_row() const { return status != Status::lost_pivot || of_A; }
 };
 
 /// Input that cannot be right. The message reads `file: element: what is wrong (accepted: …)`.

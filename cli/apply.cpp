@@ -79,7 +79,7 @@ void print_text(const Options& o, const Model& model, const VectorX<double>& inp
     std::printf("%6lld  %24.17g  %24.17g\n", static_cast<long long>(i), input[i], answer.output[i]);
   const Report& r = answer.report;
   std::printf("status %s", std::string(name(r.status)).c_str());
-  if (const std::string at = place(model, find_operator(o.op), r, answer.singular); !at.empty()) std::printf(" %s", at.c_str());
+  if (const std::string at = place(model, r, answer.singular); !at.empty()) std::printf(" %s", at.c_str());
   if (!r.rung.empty()) std::printf(", by %s (rungs tried: %d)", std::string(r.rung).c_str(), r.rungs_tried);
   if (r.iterations > 0) std::printf(", steps: %d", r.iterations);
   if (r.error_bound >= 0) std::printf(", error at most %.1e (relative, energy norm)", r.error_bound);
@@ -111,9 +111,9 @@ int apply(const Options& o, bool has_damping) {
               {"report", report_json(answer.report)}, {"dependent_rows", answer.dependent},
               {"dependent_row_names", json::array()}, {"warnings", warnings_json(scene)}};
     for (const Index dependent : answer.dependent) j["dependent_row_names"].push_back(row_name(scene.model, dependent));
-    const std::string at = place(scene.model, row, answer.report, answer.singular);
+    const std::string at = place(scene.model, answer.report, answer.singular);
     j["place"] = at.empty() ? json(nullptr) : json(at);
-    if (answer.report.where >= 0) j["report"]["where_is"] = names_row(row, answer.report, answer.singular) ? "row" : "degree of freedom";
+    if (answer.report.where >= 0) j["report"]["where_is"] = answer.report.at_row() ? "row" : "degree of freedom";
     if (o.solve) j["operations_over_lcaba"] = answer.cost > 0 ? json(answer.cost) : json(nullptr);
     if (!scene.damping.blocks.empty()) j["damping_blocks"] = damping_blocks_json(scene.damping);
     std::printf("%s\n", j.dump().c_str());

@@ -41,16 +41,9 @@ std::string joint_name(const Model& model, Index dof) {
   return model.bodies[body].joint.name + part(dof - first, model.first_dof[body + 1] - first, "degree of freedom");
 }
 
-bool names_row(const OperatorRow& row, const Report& report, bool singular) {
-  if (report.status != Status::lost_pivot) return true;
-  const std::string_view answered = report.rung.empty() ? row.name : report.rung;
-  const bool forms_A = answered == "dense_cholesky" || answered == "dense_refined" || answered == "kkt_elimination";
-  return forms_A && !singular;
-}
-
-std::string place(const Model& model, const OperatorRow& row, const Report& report, bool singular) {
+std::string place(const Model& model, const Report& report, bool singular) {
   if (report.where < 0) return {};
-  if (names_row(row, report, singular)) return "at row " + std::to_string(report.where) + " (" + row_name(model, report.where) + ")";
+  if (report.at_row()) return "at row " + std::to_string(report.where) + " (" + row_name(model, report.where) + ")";
   const char* const why = singular ? " (M is singular at this pose: this joint moves nothing that has inertia, or only what another one "
                                      "moves too; give the massless links an inertia, the joint an armature, or take another pose)"
                                    : " (M + JᵀRJ loses all digits there; kkt_elimination and ladder do without it)";

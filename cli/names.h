@@ -13,10 +13,8 @@ namespace delassus::cli {
 /// "r/j1"; "r/base, degree of freedom 3 of 6" of a joint with several.
 [[nodiscard]] std::string joint_name(const Model& model, Index dof);
 
-/// What `where` of a report of this operator is: a row, or a degree of freedom. `singular`: M itself has no factor at this pose.
-/// Of lost_pivot it is a row where A is formed and lost, a degree of freedom where M is or M + JᵀRJ.
-[[nodiscard]] bool names_row(const OperatorRow& row, const Report& report, bool singular);
-/// "at joint r/j1 (…)" or "at row 4 (weld r/l6 - world, row 5 of 6)"; empty where the report names nothing.
-[[nodiscard]] std::string place(const Model& model, const OperatorRow& row, const Report& report, bool singular);
+/// "at joint r/j1 (…)" or "at row 4 (weld r/l6 - world, row 5 of 6)"; empty where the report names nothing. `singular`: M
+/// itself has no factor at this pose.
+[[nodiscard]] std::string place(const Model& model, const Report& report, bool singular);
 
 }  // namespace delassus::cli

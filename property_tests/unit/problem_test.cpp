@@ -159,7 +159,7 @@ TEST(damping, refuses_what_is_not_positive_semidefinite) {
   EXPECT_NO_THROW(Damping<double>::uniform(6, 0.0).validate(s));
 
   expect_refusal([&] { Damping<double>::uniform(5, 0.0).validate(s); }, "damping: 5 entries");
-  expect_refusal([&] { Damping<double>::uniform(6, -1.0).validate(s); }, "damping of row 0: -1.000000 1/kg");
+  expect_refusal([&] { Damping<double>::uniform(6, -1.0).validate(s); }, "damping of row 0: -1 1/kg");
   const double inf = std::numeric_limits<double>::infinity();
   expect_refusal([&] { Damping<double>::uniform(6, inf).validate(s); }, "row 0");
   expect_refusal([&] { Damping<double>::uniform(6, std::nan("")).validate(s); }, "row 0");
