@@ -20,7 +20,7 @@ namespace delassus {
 
 template <class T> class LcabaQr : public ColumnByColumn<T> {
  public:
-  static constexpr int max_steps = 5;
+  static constexpr int max_steps = 8;
 
  protected:
   void do_analyze() override;
