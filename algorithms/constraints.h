@@ -18,12 +18,6 @@ namespace delassus {
 /// Checks one constraint of a model whose bodies are valid. @throws ModelError naming file, constraint and value.
 void validate_constraint(const Model& model, const Constraint& c, const std::string& file);
 
-/// Fills the rows of a link constraint: K[l.first + k] for every attachment l of `to`, about the reference point of
-/// that body's own tree. `S` holds the joint columns at the same poses. Cost O(rows), no allocation.
-template <class T>
-void fill_link_rows(const Model& model, const Constraint& c, const Poses<T>& poses, const std::vector<Vector6<T>>& S,
-                    const Structure::LinkConstraint& to, std::vector<Vector6<T>>& K);
-
 /// One end of a constraint at given poses.
 template <class T> struct End {
   Index body, tree;       ///< ground for a frame fixed in the world

@@ -27,12 +27,12 @@ template <class T> struct Poses {
   std::vector<Vector3<T>> reference;      ///< at roots: the tree's reference point in the world; elsewhere unused
 };
 
-/// Fills `out` at q (size q_size; quaternions of any length but zero stand for their direction). Allocates only when
-/// `out` was sized for fewer bodies. Cost O(N). @throws std::logic_error when q does not fit.
+/// Fills `out` at q (size q_size; quaternions of any length but zero stand for their direction). Compiles the bodies at each
+/// call: who asks again and again keeps a Mechanism (mechanism.h). Cost O(N). @throws std::logic_error when q does not fit.
 template <class T> void poses(const Model& model, const VectorX<T>& q, Poses<T>& out);
 
 /// Fills S, armature, H, K and joint_K at q (size q_size), world axes, each tree about its reference point.
-/// `out.structure` must come from structure_of(model). Allocation-free once `poses` is sized. Cost O(N + m).
+/// `out.structure` must come from structure_of(model). As poses, it compiles the model at each call. Cost O(N + m).
 /// Rows are the motion of side a minus that of side b, in the axes of frame a. Each side's point is the origin of its
 /// own frame; kinds whose origins drift apart (cylindrical, prismatic, planar) take the origin of b on both sides.
 /// H is symmetric to the bit. @throws std::logic_error when sizes do not fit. NaN in q, or a distance of zero length,

@@ -1,6 +1,6 @@
 #include "bench/cell.h"
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism.h"
 
 namespace delassus::bench {
 
@@ -105,9 +105,12 @@ Cell measure(const OperatorRow& row, const Problem<double>& problem, const Dampi
 }
 
 Timing time_kinematics(const Model& model, const VectorX<double>& q, double budget) {
-  Problem<double> problem(structure_of(model));
-  Poses<double> poses;
-  return stopwatch([&] { kinematics(model, q, poses, problem); }, budget);
+  Mechanism<double> mechanism(model);
+  Problem<double> problem(mechanism.structure());
+  return stopwatch([&] {
+    mechanism.update(q);
+    mechanism.fill(problem);
+  }, budget);
 }
 
 }  // namespace delassus::bench

@@ -1,5 +1,5 @@
 // Kinematics against closed forms by hand, against itself in Quad, and far from the origin.
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism.h"
 
 #include <gtest/gtest.h>
 
@@ -192,6 +192,30 @@ TEST(kinematics, storage_is_kept_and_checked) {
   Problem<double> other(structure_of(two_robots(4)));
   EXPECT_THROW(kinematics(m, q, at, other), std::logic_error);
   EXPECT_THROW((void)integrate<double>(m, q, VectorX<double>::Zero(2)), std::logic_error);
+}
+
+TEST(mechanism, used_again_says_what_a_new_one_says) {
+  Model m = two_robots(6);
+  Random random(6);
+  add_constraints(m, random, true);
+  Mechanism<double> kept(m);
+  Problem<double> p(kept.structure());
+  Poses<double> at, fresh;
+  for (int turn = 0; turn < 5; ++turn) {
+    const VectorX<double> q = random_configuration(m, random);
+    kept.update(q);
+    kept.fill(p);
+    kept.poses(at);
+    poses(m, q, fresh);
+    const Problem<double> expected = kinematics<double>(m, q);
+    EXPECT_TRUE(p.S == expected.S && p.H == expected.H && p.K == expected.K) << turn;
+    EXPECT_TRUE(p.armature == expected.armature && p.joint_K == expected.joint_K) << turn;
+    EXPECT_TRUE(at.rotation == fresh.rotation && at.position == fresh.position && at.reference == fresh.reference) << turn;
+    EXPECT_EQ(at.tree, fresh.tree);
+  }
+  Problem<double> other(structure_of(two_robots(6)));
+  EXPECT_THROW(kept.fill(other), std::logic_error);
+  EXPECT_THROW(kept.update(VectorX<double>::Zero(1)), std::logic_error);
 }
 
 TEST(integrate, is_a_one_parameter_group) {
