@@ -5,6 +5,7 @@ commit, which the program mutant_killer (operators) or models_killer (the way in
     property_tests/mutate.py --work DIR [--files factor.cpp sweep.cpp ...] [--sample N --seed S] [--batch N]
                              [--json FILE [--resume | --again]] [--list]
     property_tests/mutate.py --table --json FILE
+    property_tests/mutate.py --check                    are the lines of mutants_equivalent.txt and seeded_faults.txt still there?
     property_tests/mutate.py --work DIR --files ... --faults FILE     faults seeded by hand: kind, file, and the test that notices
 
 The copy and its build stand in DIR; the working tree is only read. The mutants of a file are built many at once
@@ -50,7 +51,7 @@ WAY_IN = {
                     "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description"),
     **dict.fromkeys(["parts.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
                      "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field SceneLaws Scenes"),
-    "kinematics.cpp": "kinematics moving integrate rows SceneLaws Description", "constraints.cpp": "rows closure moving model SceneLaws",
+    **dict.fromkeys(["kinematics.cpp", "mechanism.cpp", "mechanism_rows.cpp"], "kinematics moving integrate rows SceneLaws Description"), "constraints.cpp": "rows closure moving model SceneLaws",
     **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
     "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}
 FILES.update(WAY_IN)
@@ -78,6 +79,27 @@ def read_equivalent(path):
         elif line and not line.startswith("#"):
             name = line.strip()
     return entries
+
+
+def stale(path, once):
+    """Entries whose line the source no longer has, or has more than once where `once`."""
+    out = []
+    for name, before, _ in read_equivalent(path):
+        source = os.path.join(ROOT, folder_of(name), name)
+        lines = [line.strip() for line in open(source, encoding="utf-8")] if os.path.exists(source) else []
+        if before not in lines or once and lines.count(before) != 1:
+            out.append("%s: %d lines of %s read: %s" % (os.path.basename(path), lines.count(before), name, before))
+    return out
+
+
+def check():
+    """What a change of a source left behind in the two lists; the number of it."""
+    found = stale(os.path.join(HERE, "mutants_equivalent.txt"), False) + stale(os.path.join(HERE, "seeded_faults.txt"), True)
+    for text in dict.fromkeys(found):
+        print(text)
+    if found:
+        print("follow the source, or delete what no longer holds")
+    return len(found)
 
 
 def read_faults(path, texts):
@@ -320,9 +342,12 @@ def main():
     p.add_argument("--again", action="store_true", help="the same, but judge its unexplained survivors again")
     p.add_argument("--faults", help="judge the faults of this file (property_tests/seeded_faults.txt) instead of every mutant")
     p.add_argument("--table", action="store_true", help="print what --json holds and stop")
+    p.add_argument("--check", action="store_true", help="say which entries of the two lists name lines that are gone, and stop")
     p.add_argument("--list", action="store_true", help="print the mutants and stop")
     options = p.parse_args()
     equivalent = read_equivalent(os.path.join(HERE, "mutants_equivalent.txt"))
+    if options.check:
+        sys.exit(1 if check() else 0)
     if options.table:
         sys.exit(1 if summary(json.load(open(options.json)), equivalent) else 0)
     sys.exit(run(options, equivalent))
