@@ -6,8 +6,8 @@
 //
 // Phases: analyze (structure; once) → update (numbers at q) → update_damping (numbers at a new R⁻¹, kinematics kept)
 //         → apply / solve (vectors, or k columns at once).
-// After analyze nothing allocates. Instances share nothing: use one per thread; apply and solve are const and may run
-// concurrently with a Workspace each.
+// After analyze nothing allocates (OperatorRow::grows: but what is needed for the first time). Instances share nothing: use one
+// per thread; apply and solve are const and may run concurrently with a Workspace each.
 #pragma once
 
 #include <limits>
@@ -132,6 +132,7 @@ struct OperatorRow {
   bool terminates_exactly;    ///< exact in exact arithmetic
   bool decides_rank = false;  ///< solves a singular A too when a is in its range, and names the dependent rows
   ErrorClass apply_error, solve_error;
+  bool grows = false;         ///< allocates when it first needs a part of itself; never again
   double factor_eps = 0x1p-53;  ///< unit roundoff of the arithmetic its factor runs in: where 1/κ(A) is not far above it,
                                 ///< the operator may give up, and says so
   std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>,

@@ -26,27 +26,31 @@ template <class T> void Ladder<T>::do_analyze() {
   of_hard_rows_.clear();
   dense_ = nullptr;
   hard_ = false;
-  workspace_ = 0;
   for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
     const OperatorRow& row = find_operator(name);
     if (!std::get<Maker<T>>(row.makers) || (row.decides_rank && s.rows > max_dense_rows)) continue;
-    Rung& rung = rungs_.emplace_back(row, row.make<T>());
-    rung.op->analyze(this->structure());
-    workspace_ = std::max(workspace_, rung.op->workspace());
+    Rung& rung = rungs_.emplace_back(row);
     of_soft_rows_.push_back(&rung);
     if (row.zero_damping) of_hard_rows_.push_back(&rung);
     if (row.decides_rank) dense_ = &rung;
   }
   if (dense_ != nullptr && s.rows <= first_dense_rows) std::rotate(of_hard_rows_.begin(), of_hard_rows_.end() - 1, of_hard_rows_.end());
+  rungs_.front().op = rungs_.front().row->template make<T>();
+  rungs_.front().op->analyze(this->structure());
   first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
-  problem_ = Problem<T>(this->structure());
+  problem_ = {};
   plain_.diagonal.assign(static_cast<std::size_t>(s.rows), T(0));
-  blocks_ = plain_;
-  for (const auto& [row, rows] : wide_constraints(s)) blocks_.blocks.push_back({row, MatrixX<T>::Zero(rows, rows)});
+  blocks_ = {};
 }
 
-// A copy that allocates nothing.
+template <class T> void Ladder<T>::make_blocks() {
+  blocks_.diagonal = plain_.diagonal;
+  for (const auto& [row, rows] : wide_constraints(*this->structure())) blocks_.blocks.push_back({row, MatrixX<T>::Zero(rows, rows)});
+}
+
+// A copy that allocates nothing, but once for blocks.
 template <class T> void Ladder<T>::keep(const Damping<T>& damping) {
+  if (!damping.blocks.empty() && blocks_.diagonal.empty()) make_blocks();
   damping_ = damping.blocks.empty() ? &plain_ : &blocks_;
   std::copy(damping.diagonal.begin(), damping.diagonal.end(),
             (damping.blocks.empty() ? plain_ : blocks_).diagonal.begin());
@@ -111,6 +115,11 @@ template <class T> Report Ladder<T>::prepare(Rung& rung) const {
   if (rung.state.load(std::memory_order_acquire) == State::current) return rung.updated;
   const std::lock_guard lock(preparing_);
   if (rung.state == State::stale) {
+    if (rung.op == nullptr) {
+      rung.op = rung.row->template make<T>();
+      rung.op->analyze(this->structure());
+    }
+    if (problem_.structure == nullptr) problem_ = Problem<T>(this->structure());
     if (!std::exchange(problem_is_current_, true)) first_->numbers(problem_);
     rung.updated = rung.op->update(problem_, *damping_);
   }
@@ -145,11 +154,37 @@ bool better(const Report& r, const Report& than) {
 }
 }  // namespace
 
+template <class T> class Ladder<T>::Lent {
+ public:
+  Lent(Rung& rung, std::mutex& lending) : rung_(rung), lending_(lending) {
+    const std::lock_guard lock(lending_);
+    if (rung_.idle.empty()) {
+      workspace_ = std::make_unique<Workspace<T>>(rung_.op->workspace());
+      rung_.idle.reserve(++rung_.lent);
+    } else {
+      workspace_ = std::move(rung_.idle.back());
+      rung_.idle.pop_back();
+    }
+  }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  ~Lent() {
+    const std::lock_guard lock(lending_);
+    rung_.idle.push_back(std::move(workspace_));
+  }
+  Workspace<T>& operator*() { return *workspace_; }
+
+ private:
+  Rung& rung_;
+  std::mutex& lending_;
+  std::unique_ptr<Workspace<T>> workspace_;
+};
+
 template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
   const Index m = this->size();
   const Eigen::Map<const MatrixX<T>> right(a, m, 1);
   Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
-  Workspace<T> rest(workspace + padded(m), workspace_);
+  Workspace<T> of_first(workspace + padded(m), first_->workspace());
   Report best{Status::not_supported};
   int steps = 0, tried = 0;
   for (Rung* const rung : order()) {
@@ -157,7 +192,11 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
     // who has no bound must show all digits where another one sees a contradiction
     const double accuracy = best.status == Status::inconsistent ? 0 : wanted.error;
     Report report = prepare(*rung);
-    if (report.ok()) report = rung->op->solve(right, answer, {accuracy, wanted.steps - steps}, rest);
+    if (report.ok()) {
+      const Accuracy left{accuracy, wanted.steps - steps};
+      report = rung == &rungs_.front() ? rung->op->solve(right, answer, left, of_first)
+                                       : rung->op->solve(right, answer, left, *Lent(*rung, lending_));
+    }
     report.rung = rung->row->name;
     report.rungs_tried = ++tried;
     report.iterations = steps += report.iterations;
@@ -169,11 +208,17 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
   return best;
 }
 
-template <class T> Index Ladder<T>::do_workspace(Index) const { return padded(this->size()) + workspace_; }
+template <class T> Index Ladder<T>::do_workspace(Index) const { return padded(this->size()) + first_->workspace(); }
 
 template <class T> Index Ladder<T>::do_bytes() const {
+  const std::lock_guard lock(preparing_);
+  const std::lock_guard lending(lending_);
   Index all = 0;
-  for (const Rung& rung : rungs_) all += rung.op->bytes();
+  for (const Rung& rung : rungs_)
+    if (rung.op != nullptr) {
+      all += rung.op->bytes();
+      for (const auto& w : rung.idle) all += w->size() * static_cast<Index>(sizeof(T));
+    }
   return all + static_cast<Index>(problem_.H.size() * sizeof(Matrix6<T>) +
                                   (problem_.S.size() + problem_.K.size()) * sizeof(Vector6<T>) +
                                   (problem_.armature.size() + problem_.joint_K.size() + 2 * plain_.diagonal.size()) * sizeof(T));

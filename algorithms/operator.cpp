@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "algorithms/delassus.h"
+#include "algorithms/lanes.h"
 
 namespace delassus {
 
@@ -72,11 +73,18 @@ void Operator<T>::check(ConstRef<T> in, Ref<T> out, const Workspace<T>& w) const
 
 namespace {
 template <class T> bool all_finite(ConstRef<T> x) {
-  for (Index c = 0; c < x.cols(); ++c)
-    for (Index r = 0; r < x.rows(); ++r) {
-      using std::isfinite;
-      if (!isfinite(x(r, c))) return false;
+  using std::isfinite;
+  for (Index c = 0; c < x.cols(); ++c) {
+    const T* const column = x.data() + c * x.outerStride();
+    Index r = 0;
+    if constexpr (std::is_same_v<T, double>) {
+      Lanes8 nothing{};  // 0 x is 0 of what is finite, NaN of the rest
+      for (; r + 8 <= x.rows(); r += 8) nothing += load_lanes(column + r) * 0.0;
+      if (!(total(nothing) == 0)) return false;
     }
+    for (; r < x.rows(); ++r)
+      if (!isfinite(column[r])) return false;
+  }
   return true;
 }
 

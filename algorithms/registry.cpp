@@ -63,7 +63,7 @@ const std::vector<OperatorRow>& operators() {
       {.name = "ladder", .summary = "the default: the cheapest rung that reaches the wanted accuracy",
        .formula = "Λ_R a by lcaba_refined, lcaba_qr, proximal or kkt_elimination", .source = "algorithms/ladder.h",
        .cost = "that of the rungs climbed", .applies = false, .solves = true, .zero_damping = true,
-       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .grows = true,
        .makers = ordered_makers<Ladder>()},
       {.name = "lcaba_qr", .summary = "square-root elimination: accurate however stiff or redundant the constraints",
        .formula = "min ‖ν‖²_M + ‖a − J ν‖²_R, f read from its residual", .source = "algorithms/square_root_factor.h",

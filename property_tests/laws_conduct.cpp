@@ -143,14 +143,15 @@ Verdict no_allocation(const OperatorRow& op, const Case& c) {
   MatrixX<double> y(c.rows(), 3);
   Workspace<double> w(operation->workspace(3));
   const char* phases[] = {"update", "update_damping", "apply", "solve"};
-  for (int phase = 0; phase < 4; ++phase) {
+  for (int step = op.grows ? -4 : 0; step < 4; ++step) {  // who grows is asked twice
+    const int phase = (step + 4) % 4;
     const std::int64_t before = allocation_count();
     if (phase == 0) static_cast<void>(operation->update(c.problem, c.damping));
     if (phase == 1) static_cast<void>(operation->update_damping(other));
     if (phase == 2 && op.applies) static_cast<void>(operation->apply(x, y, w));
     if (phase == 3 && op.solves) static_cast<void>(operation->solve(x, y, w));
     const std::int64_t count = allocation_count() - before;
-    if (count != 0) return failure(std::string(phases[phase]) + " allocates " + std::to_string(count) + " times", "zero");
+    if (step >= 0 && count != 0) return failure(std::string(phases[phase]) + " allocates " + std::to_string(count) + " times", "zero");
   }
   return {0, "zero", -1, {}};
 }

@@ -84,6 +84,19 @@ TEST(Ladder, WhatIsNotAskedIsNotComputed) {
   EXPECT_LT(loose, full);
 }
 
+TEST(Ladder, WhatNobodyClimbsToHoldsNoMemory) {
+  for (const auto family : {"humanoid", "redundant"}) {
+    Solver s(family, 1e-4), first(family, 1e-4, "lcaba_refined"), dense(family, 1e-4, "kkt_elimination");
+    const auto m = static_cast<Index>(s.a.rows());
+    EXPECT_LE(s.op->bytes(), first.op->bytes() + static_cast<Index>(sizeof(double)) * (2 * m + 36)) << family;
+    EXPECT_LE(s.op->workspace(), first.op->workspace() + m + 8) << family;
+    ASSERT_TRUE(s.solve({1e-3}).ok());
+    EXPECT_LT(s.op->bytes(), first.op->bytes() + dense.op->bytes()) << family;
+    EXPECT_EQ(s.solve({1e-20}).status, Status::not_converged) << "all rungs";
+    EXPECT_GE(s.op->bytes(), first.op->bytes() + dense.op->bytes()) << family;
+  }
+}
+
 TEST(Ladder, ACertifiedAnswerReachesEveryTargetItClaims) {
   for (const double damping : {1e-2, 1e-6, 1e-10, 1e-14})
     for (const double target : {1e-2, 1e-6, 1e-10}) {

@@ -177,8 +177,13 @@ TEST(Rungs, ThreadsThatClimbAtOnceGetTheSameAnswer) {
 
 TEST(Rungs, TheDenseOneTakesSoManyRows) {
   const auto bytes = [](Index rows) {
+    const Problem<double> p = sliding(1, std::vector<std::array<double, 2>>(static_cast<std::size_t>(rows), {1, 0}));
     const auto op = find_operator("ladder").make<double>();
-    op->analyze(sliding(1, std::vector<std::array<double, 2>>(static_cast<std::size_t>(rows), {1, 0})).structure);
+    op->analyze(p.structure);
+    EXPECT_TRUE(op->update(p, Damping<double>::uniform(rows, 1)).ok());
+    Workspace<double> w(op->workspace());
+    MatrixX<double> f(rows, 1);
+    EXPECT_EQ(op->solve(MatrixX<double>::Ones(rows, 1), f, {1e-20}, w).status, Status::not_converged) << "all rungs are asked";
     return op->bytes();
   };
   EXPECT_GT(bytes(Ladder<double>::max_dense_rows), 2 * bytes(Ladder<double>::max_dense_rows + 1));
