@@ -137,6 +137,9 @@ void MjcfReader::add_base(int b, const Pose<double>& link, JointType type) {
 }
 
 void MjcfReader::add_link(int b) {
+  const Eigen::Map<const Eigen::Vector4d> turn(m_.body_quat + 4 * b);
+  if (!(std::fabs(turn.norm() - 1) < 1e-9))
+    fail("body " + in_quotes(link_name(b)) + " quat", "is lost: MuJoCo's compiler makes (" + numbers_text(turn) + ") of it", "a quaternion whose square is finite and not 0");
   const Frame& parent = link_[z(m_.body_parentid[b])];
   Pose<double> link = parent.placement * mujoco_pose(m_.body_pos + 3 * b, m_.body_quat + 4 * b);
   const int joints = m_.body_jntnum[b], j = m_.body_jntadr[b];

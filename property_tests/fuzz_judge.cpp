@@ -1,18 +1,23 @@
 #include "property_tests/fuzz_judge.h"
 
+#include <tinyxml2.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "generators/build.h"
 #include "generators/spec.h"
 #include "models/scene.h"
+#include "property_tests/second_reading.h"
 #include "reference/definition.h"
+#include "reference/sdf_witness.h"
 #include "reference/urdf_witness.h"
 
 namespace delassus {
@@ -27,21 +32,6 @@ std::string words(const std::vector<Warning>& warnings, const std::vector<std::s
   for (const Warning& w : warnings) out += w.text + "\n";
   for (const std::string& n : notes) out += n + "\n";
   return out;
-}
-
-/// Largest |x − y| / (eps · bound).
-double worst(const MatrixX<Quad>& x, const MatrixX<Quad>& y, const MatrixX<Quad>& bound) {
-  if (x.rows() != y.rows() || x.cols() != y.cols()) return std::numeric_limits<double>::infinity();
-  double largest = 0;
-  for (Index j = 0; j < y.cols(); ++j)
-    for (Index i = 0; i < y.rows(); ++i) {
-      const Quad error = abs(Quad(x(i, j) - y(i, j)));
-      if (error == Quad(0)) continue;
-      const Quad underflow(bound(i, j) == Quad(0) ? 0.0 : std::numeric_limits<double>::min());
-      const double r = static_cast<double>(error / (Quad(unit_roundoff<double>) * (bound(i, j) + underflow)));
-      largest = std::max(largest, std::isnan(r) ? std::numeric_limits<double>::infinity() : r);
-    }
-  return largest;
 }
 
 VectorX<double> pose(const Model& model) {
@@ -91,8 +81,8 @@ std::string differs(const std::string& file, Model& model, const Robot& robot, b
     const UrdfMatrices theirs = reference::urdf_matrices(w, model, robot.name, q, leaves);
     if (!theirs.regular && largest(w) < 1e6) return "M is singular or indefinite, and the model loads";
     const Problem<Quad> problem = kinematics<double>(model, q).cast<Quad>();
-    const double M = worst(reference::mass_matrix(problem), theirs.M, theirs.M_bound);
-    const double J = worst(reference::constraint_jacobian(problem), theirs.J, theirs.J_bound);
+    const double M = worst_ratio(reference::mass_matrix(problem), theirs.M, theirs.M_bound);
+    const double J = worst_ratio(reference::constraint_jacobian(problem), theirs.J, theirs.J_bound);
     if (!(M < 30 && J < 30) && !warned) return "M at ratio " + std::to_string(M) + ", J at ratio " + std::to_string(J);
   } catch (const std::exception& e) {
     if (std::string(e.what()).find("no robot") != std::string::npos) return {};  // another format's root element
@@ -111,13 +101,65 @@ FuzzVerdict judge_urdf(const std::string& file, bool fixed) {
   return {true, words(robot.warnings, robot.notes), differs(file, model, robot, fixed)};
 }
 
+/// A number of an MJCF text that is none, or "": MuJoCo may take its beginning.
+std::string no_number(const tinyxml2::XMLElement* e) {
+  static const std::set<std::string> names{"pos", "quat", "euler", "axisangle", "xyaxes", "zaxis", "mass", "diaginertia", "fullinertia", "axis", "armature",
+                                           "damping", "frictionloss", "ref", "anchor", "relpose", "polycoef", "density", "size", "range"};
+  for (; e != nullptr; e = e->NextSiblingElement()) {
+    for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a != nullptr; a = a->Next()) {
+      if (names.count(a->Name()) == 0) continue;
+      std::istringstream words(a->Value());
+      for (std::string word; words >> word;) {
+        char* end = nullptr;
+        static_cast<void>(std::strtod(word.c_str(), &end));
+        if (word.find_first_not_of("0123456789+-.eE") != std::string::npos || *end != '\0') return std::string(a->Name()) + " '" + a->Value() + "' is taken for numbers";
+      }
+    }
+    if (const std::string found = no_number(e->FirstChildElement()); !found.empty()) return found;
+  }
+  return {};
+}
+
+/// The largest length or moment of the model: beyond 1e12 rounding hides what is compared.
+double largest(const Model& model) {
+  double out = 0;
+  for (const Body& b : model.bodies)
+    out = std::max({out, b.joint.placement.translation.cwiseAbs().maxCoeff(), b.com.cwiseAbs().maxCoeff(), b.inertia.cwiseAbs().maxCoeff(), b.mass});
+  return out;
+}
+
+/// What is wrong with an MJCF or SDF that loaded, or "".
+std::string differs_from_second(const RobotOptions& options, Model& model, const Robot& robot) {
+  const bool warned = !robot.warnings.empty(), noted = warned || !robot.notes.empty();
+  try {
+    const std::unique_ptr<SecondReading> second = second_reading(options);
+    if (second == nullptr) return {};
+    if (!second->doubtful().empty() && !noted) return "nothing is said of " + second->doubtful().front();
+    tinyxml2::XMLDocument document;
+    if (document.LoadFile(options.file.c_str()) != tinyxml2::XML_SUCCESS) return "loads, though it is no XML";
+    if (const std::string found = std::string(document.RootElement()->Name()) == "mujoco" ? no_number(document.RootElement()) : ""; !found.empty() && !warned) return found;
+    if (largest(model) > 1e12 || model.dofs() == 0) return {};
+    second->add_welds(model, robot);
+    VectorX<double> q = pose(model);
+    const reference::WitnessMatrices theirs = second->matrices(model, robot, q);
+    const Problem<Quad> ours = kinematics<double>(model, q).cast<Quad>();
+    const double M = worst_ratio(reference::mass_matrix(ours), theirs.M, theirs.M_bound);
+    const double J = worst_ratio(reference::constraint_jacobian(ours), theirs.J, theirs.J_bound);
+    if (!(M < 30 && J < 30) && !warned) return "M at ratio " + std::to_string(M) + ", J at ratio " + std::to_string(J);
+  } catch (const reference::NotServed&) {
+  } catch (const std::exception& e) {
+    if (!warned) return std::string("loads, though: ") + e.what();
+  }
+  return {};
+}
+
 FuzzVerdict judge_robot(const std::string& file) {
   RobotOptions options;
   options.file = file, options.robot = "r";
   Model model;
   const Robot robot = add_robot(model, options);
   validate(model, file);
-  return {true, words(robot.warnings, robot.notes), {}};
+  return {true, words(robot.warnings, robot.notes), differs_from_second(options, model, robot)};
 }
 
 FuzzVerdict judge_scene(const std::string& file, const std::string& text) {

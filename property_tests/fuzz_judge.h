@@ -26,6 +26,8 @@ struct FuzzVerdict {
 ///   URDF: a model that differs from reference/urdf_witness.h in a total mass, in M or in J, or a text that the witness
 ///   does not take for a URDF, unless a warning says so; an M that the witness finds singular or indefinite; elements that
 ///   URDF does not have, or that stand twice, without a note or a warning;
+///   MJCF, SDF: a model that differs in M or J from MuJoCo's numbers, or from reference/sdf_witness.h, or a text that the
+///   second reading does not take, unless a warning says so; SDF elements that stand twice; numbers of an MJCF that are none;
 ///   YAML: masses of boxes that differ from the text's, unless a warning says so;
 ///   JSON: a key or a value of the text that is not in the spec.
 /// (A crash and a hang are for the caller to see.) `folder` holds fuzz.urdf for the scenes.

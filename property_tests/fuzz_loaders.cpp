@@ -31,6 +31,7 @@ struct Options {
   std::size_t findings = 20;
   std::string keep = ".", only, corpus = DELASSUS_LOADER_CORPUS;
   std::vector<std::string> files;
+  bool mutants_only = false;
 };
 
 std::string read(const fs::path& file) {
@@ -142,14 +143,14 @@ std::vector<FuzzText> chosen(const std::vector<FuzzText>& all, const std::string
   return out;
 }
 
-/// The sound texts must load in silence, or the judge would be deaf. A format may be left out of the build.
+/// The sound texts must load, and in silence but for notes, or the judge would be deaf. A format may be left out of the build.
 bool sound(const std::vector<FuzzText>& texts, const std::string& folder) {
   bool all = true;
   for (const FuzzText& t : texts)
     for (const std::uint64_t seed : {0, 1}) {
       const FuzzVerdict v = judge_text(t, folder, seed);
-      if (v.loaded && v.finding.empty() && v.message.empty()) continue;
-      if (t.format == "xml" || t.format == "sdf") continue;
+      if (v.loaded && v.finding.empty() && (v.message.empty() || t.format == "xml" || t.format == "sdf")) continue;  // these have notes
+      if (!v.loaded && v.message.find("built without") != std::string::npos) continue;
       std::printf("a sound text (%s) is not read as one: %s %s\n", t.format.c_str(), v.message.c_str(), v.finding.c_str());
       all = false;
     }
@@ -172,8 +173,11 @@ int fuzz(const Options& o) {
     if (!heard) return 1;
     fuzz.run("corpus", static_cast<std::int64_t>(corpus.size()), from(corpus));
     std::vector<FuzzText> kinds;
-    for (const FuzzText& t : texts)
-      for (std::string& text : whole_kinds(t.text)) kinds.push_back({t.format, std::move(text)});
+    for (const FuzzText& t : o.mutants_only ? std::vector<FuzzText>{} : texts) {
+      const std::size_t step = t.format == "sdf" && t.text.size() > 2000 ? 10 : 1;  // libsdformat takes 20 ms for a text
+      std::vector<std::string> all = whole_kinds(t.text);
+      for (std::size_t k = 0; k < all.size(); k += step) kinds.push_back({t.format, std::move(all[k])});
+    }
     fuzz.run("whole kinds", static_cast<std::int64_t>(kinds.size()), from(kinds));
     const auto mutant = [&](std::int64_t i) {
       const FuzzText& t = texts[static_cast<std::size_t>(i) % texts.size()];
@@ -200,6 +204,7 @@ int main(int argc, char** argv) {
   app.add_option("--limit", o.limit, "time for one text [s]")->check(options::above(0, "s"))->capture_default_str();
   app.add_option("--findings", o.findings, "stop after so many")->capture_default_str();
   app.add_option("--only", o.only, "one format")->check(options::one_of({"urdf", "yaml", "json", "xml", "sdf"}));
+  app.add_flag("--mutants-only", o.mutants_only, "without the whole kinds, which are the same for every seed");
   app.add_option("--keep", o.keep, "folder for the texts of findings")->check(options::existing_directory())->capture_default_str();
   app.add_option("FILE", o.files, "judge these only")->check(options::existing_file());
   app.footer("Exit code 1 with a finding.");

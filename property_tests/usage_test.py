@@ -61,7 +61,14 @@ with tempfile.TemporaryDirectory() as folder:
     totals = json.loads(printed([delassus, "survey", folder, "--json"]))["totals"]
     if (totals["loads"], totals["refused_rightly"], totals["differ"]) != (1, 2, 0) or not 0 < totals["worst_ratios"]["M"] < 30:
         failures.append(f"survey: {totals}")
-    printed([delassus, "survey", folder], "3 files", "refused, rightly", "urdfdom does not read it")
+    (pathlib.Path(folder) / "d.sdf").write_text("<sdf version='1.9'><model name='m'><link name='a'/><link name='b'><pose>1 0 0 0 0 0</pose></link><joint name='j' type='revolute'>"
+                                                "<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>")
+    (pathlib.Path(folder) / "e.xml").write_text("<mujoco><worldbody><body name='a'><joint/><geom size='1'/></body></worldbody></mujoco>")
+    (pathlib.Path(folder) / "f.xml").write_text("<mujoco><worldbody><bdy/></worldbody></mujoco>")
+    for j in json.loads(printed([delassus, "survey", folder, "--json"]))["files"]:
+        if "differs" in j or (j["state"] == "loads" and "M" not in j["ratios"]) or (j["state"] == "refused" and j["right"] is None and "built without" not in j["why"]):
+            failures.append(f"survey: {j}")
+    printed([delassus, "survey", folder], "6 files", "refused, rightly", "urdfdom does not read it")
 
 with tempfile.TemporaryDirectory() as folder:
     vector = pathlib.Path(folder) / "vector.json"

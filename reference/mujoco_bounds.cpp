@@ -22,14 +22,26 @@ double joint_travel(JointType type, const double* q) {
   }
 }
 
-/// ℓ_i of every body's frame.
+/// ℓ_i of every body's frame: the path to it, and to its tree's centre of mass, about which MuJoCo computes.
 Vector reach_of(const Model& model, const Vector& q) {
   Vector reach(static_cast<Index>(model.bodies.size()));
   for (Index i = 0; i < reach.size(); ++i) {
     const Body& body = model.bodies[i];
-    reach[i] = (body.parent == ground ? 0 : reach[body.parent]) + body.joint.placement.translation.norm() +
+    reach[i] = (body.parent == ground ? 0 : reach[body.parent]) + body.joint.placement.translation.stableNorm() +
                joint_travel(body.joint.type, q.data() + model.first_q[i]);
   }
+  const auto tree = [&](Index i) {
+    while (model.bodies[i].parent != ground) i = model.bodies[i].parent;
+    return i;
+  };
+  Vector mass = Vector::Zero(reach.size()), moment = mass;  // by the tree's root
+  for (Index i = 0; i < reach.size(); ++i) {
+    const Body& body = model.bodies[i];
+    const Index root = tree(i);
+    mass[root] += body.mass, moment[root] += body.mass * (reach[i] + body.com.stableNorm());
+  }
+  for (Index i = 0; i < reach.size(); ++i)
+    if (mass[tree(i)] > 0) reach[i] += moment[tree(i)] / mass[tree(i)];
   return reach;
 }
 
@@ -53,7 +65,7 @@ Matrix6<double> inertia_size(const Body& body, double reach) {
 double direction_loss(const Model& model, const Constraint& c, const Vector& reach, const Poses<double>& at) {
   if (c.kind != Constraint::Kind::distance) return 1;
   double ends = 0;
-  for (const Frame* f : {&c.a, &c.b}) ends += (f->body == ground ? 0 : reach[f->body]) + f->placement.translation.norm();
+  for (const Frame* f : {&c.a, &c.b}) ends += (f->body == ground ? 0 : reach[f->body]) + f->placement.translation.stableNorm();
   return 1 + ends / (closure_error(model, c, at)[0] + c.length);
 }
 
@@ -77,9 +89,9 @@ Problem<double> sizes_of(const Model& model, const Vector& q, Problem<double> p)
     const double loss = direction_loss(model, c, reach, at);
     for (const auto& l : e.links) {
       double arm = reach[l.body];
-      for (const Frame* f : {&c.a, &c.b}) arm += f->placement.translation.norm();
+      for (const Frame* f : {&c.a, &c.b}) arm += f->placement.translation.stableNorm();
       for (Index k = 0; k < e.rows; ++k) {
-        const double linear = loss * p.K[l.first + k].tail<3>().norm(), angular = p.K[l.first + k].head<3>().norm();
+        const double linear = loss * p.K[l.first + k].tail<3>().stableNorm(), angular = p.K[l.first + k].head<3>().stableNorm();
         p.K[l.first + k] = halves(angular + linear * arm, linear);
       }
     }

@@ -268,6 +268,7 @@ class Reader {
         {"revolute2", {Kind::universal, 2}}, {"gearbox", {Kind::gearbox, 2}}};
     SdfWitness::Joint j;
     j.name = s.prefix + attribute(e, "name");
+    if (s.named.at(attribute(e, "name")) != e) j.name += "_joint";  // as libsdformat calls it, with a warning
     const auto kind = kinds.find(attribute(e, "type"));
     if (kind == kinds.end()) refuse(e, "type " + attribute(e, "type"));
     j.kind = kind->second.first;

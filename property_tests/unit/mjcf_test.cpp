@@ -340,6 +340,8 @@ TEST(Mjcf, what_mujoco_refuses_is_refused_in_its_words) {
   for (const char* text : {"", "<?xml version=\"1.0\"?>", "<!-- nothing -->", "</a>", "<mujoco>", "<mujocoinclude/>", "<robot/>", "<mujoco><worldbody><body></mujoco>"})
     EXPECT_NE(refusal(write("broken.xml", text)), "") << text;
   EXPECT_NE(refusal("/nowhere/robot.xml"), "");
+  const std::string long_turn = "<worldbody><body name=\"b\" quat=\"1e308 0.1 0 0\"><joint/><geom size=\"1\"/></body></worldbody>";
+  EXPECT_NE(refusal(mjcf("long_turn", long_turn)).find("body \"b\" quat"), std::string::npos);
 }
 
 TEST(Mjcf, missing_meshes_are_left_out_when_no_inertia_needs_them) {
