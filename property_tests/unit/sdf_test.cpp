@@ -1,63 +1,22 @@
 // Robots from SDF: the same robot as URDF, loops closed by the file's own joints, frames, what is said and refused.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "models/robot.h"
 #include "models/scene.h"
-#include "property_tests/unit/temporary.h"
+#include "property_tests/unit/sdf_text.h"
 #include "reference/definition.h"
 
 namespace delassus {
 namespace {
 
-namespace fs = std::filesystem;
 using test::temporary;
+using unit::read_robot;
+using unit::sdf;
+using unit::sdf_inertial;
+using unit::start;
+using unit::write_sdf;
 
 constexpr double eps = 0x1p-53;
-
-std::string write(const std::string& name, const std::string& text) {
-  const fs::path file = temporary(name);
-  fs::create_directories(file.parent_path());
-  std::ofstream(file) << text;
-  return file.string();
-}
-
-std::string sdf(const std::string& inside) { return "<?xml version='1.0'?>\n<sdf version='1.9'>\n<model name='m'>\n" + inside + "\n</model>\n</sdf>\n"; }
-
-std::string inertial(double mass, const std::string& pose = "") {
-  return "<inertial>" + (pose.empty() ? "" : "<pose>" + pose + "</pose>") + "<mass>" + std::to_string(mass) +
-         "</mass><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz><ixy>0.001</ixy><ixz>-0.002</ixz><iyz>0.003</iyz></inertia></inertial>";
-}
-
-#define NEEDS_SDF \
-  if (!sdf_is_read()) GTEST_SKIP() << "built without libsdformat"
-
-Robot read(const std::string& file, Model& model, RobotOptions o = {}) {
-  o.file = file, o.robot = "r";
-  return add_robot(model, o);
-}
-
-bool sdf_is_read() {
-  static const bool known = [] {
-    Model m;
-    try {
-      (void)read(write("sdf/probe.sdf", sdf("<link name='a'>" + inertial(1) + "</link>")), m);
-    } catch (const ModelError& e) {
-      return std::string(e.what()).find("without libsdformat") == std::string::npos;
-    }
-    return true;
-  }();
-  return known;
-}
-
-VectorX<double> start(const Model& model, const Robot& robot) {
-  VectorX<double> q = neutral(model);
-  for (const auto& [body, values] : robot.start)
-    for (std::size_t k = 0; k < values.size(); ++k) q[model.first_q[static_cast<std::size_t>(body)] + static_cast<Index>(k)] = values[k];
-  return q;
-}
 
 MatrixX<double> M_of(const Model& model, const VectorX<double>& q) { return reference::mass_matrix(kinematics(model, q)); }
 
@@ -77,11 +36,11 @@ const char* const arm_urdf = R"(<robot name="arm">
 
 std::string arm_sdf(bool nested = false) {
   const std::string links =
-      "<link name='base'>" + inertial(2) + "</link>"
-      "<link name='upper'><pose relative_to='shoulder'/>" + inertial(1.5, "0.1 0.02 -0.03 0.3 -0.2 0.5") + "</link>"
-      "<link name='rail'><pose relative_to='slide'/>" + inertial(0.5, "0 0.2 0 0 0 1") + "</link>"
-      "<link name='tip'><pose relative_to='wrist'/>" + inertial(0.25, "0.05 0 0.1 0 0 0") + "</link>"
-      "<link name='cap'><pose relative_to='tip'>0 0 0.3 0 0.4 0</pose>" + inertial(0.125) + "</link>";
+      "<link name='base'>" + sdf_inertial(2) + "</link>"
+      "<link name='upper'><pose relative_to='shoulder'/>" + sdf_inertial(1.5, "0.1 0.02 -0.03 0.3 -0.2 0.5") + "</link>"
+      "<link name='rail'><pose relative_to='slide'/>" + sdf_inertial(0.5, "0 0.2 0 0 0 1") + "</link>"
+      "<link name='tip'><pose relative_to='wrist'/>" + sdf_inertial(0.25, "0.05 0 0.1 0 0 0") + "</link>"
+      "<link name='cap'><pose relative_to='tip'>0 0 0.3 0 0.4 0</pose>" + sdf_inertial(0.125) + "</link>";
   const std::string joints =
       "<frame name='turned' attached_to='base'><pose>0 0.1 0.2 0.1 0.2 0.3</pose></frame>"
       "<joint name='shoulder' type='revolute'><pose relative_to='turned'/><parent>base</parent><child>upper</child>"
@@ -102,7 +61,7 @@ TEST(Sdf, the_same_robot_as_in_urdf) {
       o.base = base, o.base_given = true;
       o.pose = {rotation_rpy({0.2, -0.4, 1.1}), Vector3<double>(1, 2, 3)};
       Model a, b;
-      const Robot u = read(write("sdf/arm.urdf", arm_urdf), a, o), s = read(write("sdf/arm.sdf", arm_sdf(nested)), b, o);
+      const Robot u = read_robot(write_sdf("sdf/arm.urdf", arm_urdf), a, o), s = read_robot(write_sdf("sdf/arm.sdf", arm_sdf(nested)), b, o);
       ASSERT_EQ(a.dofs(), b.dofs());
       VectorX<double> q = start(b, s);
       for (Index k = 0; k < 3; ++k) q[q.size() - 1 - k] = 0.3 + 0.4 * static_cast<double>(k);
@@ -138,7 +97,7 @@ TEST(Sdf, the_same_robot_as_in_urdf) {
 std::string four_bar(const std::string& last) {
   const std::string turn = "0 0 0 0.3 0.6154797 0.7853982";
   std::string out = "<frame name='plane'><pose>" + turn + "</pose></frame>";
-  auto link = [&](const char* name, const char* at) { out += "<link name='" + std::string(name) + "'><pose relative_to='plane'>" + at + "</pose>" + inertial(1) + "</link>"; };
+  auto link = [&](const char* name, const char* at) { out += "<link name='" + std::string(name) + "'><pose relative_to='plane'>" + at + "</pose>" + sdf_inertial(1) + "</link>"; };
   link("ground", "0 0 0 0 0 0"), link("left", "0 0.5 0 0 0 0"), link("top", "0.5 1 0 0 0 0"), link("right", "1 0.5 0 0 0 0");
   auto joint = [&](const std::string& name, const std::string& type, const char* parent, const char* child, const char* at) {
     out += "<joint name='" + name + "' type='" + type + "'><pose relative_to='plane'>" + at + "</pose><parent>" + parent + "</parent><child>" + child +
@@ -165,7 +124,7 @@ TEST(Sdf, a_loop_of_the_file_has_the_right_mobility) {
                         Case{"universal", Constraint::Kind::universal, 4, 2}, Case{"fixed", Constraint::Kind::weld, 6, 3},
                         Case{"prismatic", Constraint::Kind::prismatic, 5, 2}}) {
     Model model;
-    const Robot robot = read(write("sdf/four_bar.sdf", four_bar(c.type)), model);
+    const Robot robot = read_robot(write_sdf("sdf/four_bar.sdf", four_bar(c.type)), model);
     ASSERT_EQ(model.dofs(), 3) << c.type;
     ASSERT_EQ(model.constraints.size(), 1u) << c.type;
     const Constraint& loop = model.constraints[0];
@@ -186,12 +145,12 @@ TEST(Sdf, a_loop_of_the_file_has_the_right_mobility) {
 
 TEST(Sdf, the_world_the_base_and_static_models) {
   NEEDS_SDF;
-  const std::string links = "<link name='a'><pose>0 0 1 0 0 0</pose>" + inertial(1) + "</link><link name='b'>" + inertial(1) + "</link>"
+  const std::string links = "<link name='a'><pose>0 0 1 0 0 0</pose>" + sdf_inertial(1) + "</link><link name='b'>" + sdf_inertial(1) + "</link>"
                             "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint>";
   const std::string hung = "<joint name='w' type='fixed'><parent>world</parent><child>a</child></joint>";
   auto dofs = [&](const std::string& inside, RobotOptions o = {}) {
     Model model;
-    const Robot robot = read(write("sdf/base.sdf", sdf(inside)), model, o);
+    const Robot robot = read_robot(write_sdf("sdf/base.sdf", sdf(inside)), model, o);
     return model.dofs();
   };
   RobotOptions free, fixed;
@@ -205,7 +164,7 @@ TEST(Sdf, the_world_the_base_and_static_models) {
   Model model;
   const std::string world = "<sdf version='1.9'><world name='w'><model name='one'><pose>0 0 5 0 0 0</pose>" + links + "</model><model name='two'>" + links +
                             "</model><model name='floor'><static>true</static><link name='f'/></model></world></sdf>";
-  const Robot robot = read(write("sdf/world.sdf", world), model);
+  const Robot robot = read_robot(write_sdf("sdf/world.sdf", world), model);
   EXPECT_EQ(model.dofs(), 14);
   EXPECT_EQ(robot.links.count("two::b"), 1u);
   EXPECT_EQ(robot.links.at("floor::f").body, ground);
@@ -216,7 +175,7 @@ TEST(Sdf, the_world_the_base_and_static_models) {
 TEST(Sdf, screws_and_gears_are_coupled) {
   NEEDS_SDF;
   Model screw;
-  (void)read(write("sdf/screw.sdf", sdf("<link name='a'>" + inertial(1) + "</link><link name='b'>" + inertial(1) + "</link>"
+  (void)read_robot(write_sdf("sdf/screw.sdf", sdf("<link name='a'>" + sdf_inertial(1) + "</link><link name='b'>" + sdf_inertial(1) + "</link>"
     "<joint name='w' type='fixed'><parent>world</parent><child>a</child></joint>"
     "<joint name='s' type='screw'><parent>a</parent><child>b</child><thread_pitch>-4</thread_pitch><axis><xyz>0 0 1</xyz></axis></joint>")), screw);
   ASSERT_EQ(screw.dofs(), 2);
@@ -224,7 +183,7 @@ TEST(Sdf, screws_and_gears_are_coupled) {
   ASSERT_EQ(J.rows(), 1);
   EXPECT_EQ(J(0, 0) / J(0, 1), -0.25);  // travel − angle / 4 = 0
   Model gear;
-  const Robot r = read(write("sdf/gear.sdf", sdf("<link name='a'>" + inertial(1) + "</link><link name='b'>" + inertial(1) + "</link><link name='c'>" + inertial(1) + "</link>"
+  const Robot r = read_robot(write_sdf("sdf/gear.sdf", sdf("<link name='a'>" + sdf_inertial(1) + "</link><link name='b'>" + sdf_inertial(1) + "</link><link name='c'>" + sdf_inertial(1) + "</link>"
     "<joint name='w' type='fixed'><parent>world</parent><child>a</child></joint>"
     "<joint name='jb' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint>"
     "<joint name='jc' type='revolute'><parent>a</parent><child>c</child><axis><xyz>0 0 -1</xyz></axis></joint>"
@@ -241,42 +200,42 @@ TEST(Sdf, says_what_it_cannot_read) {
   auto refused = [&](const std::string& text, const std::string& part) {
     Model model;
     try {
-      (void)read(write("sdf/bad.sdf", text), model);
+      (void)read_robot(write_sdf("sdf/bad.sdf", text), model);
       ADD_FAILURE() << "accepted: " << part;
     } catch (const ModelError& e) {
       EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
     }
   };
-  const std::string a = "<link name='a'>" + inertial(1) + "</link>";
+  const std::string a = "<link name='a'>" + sdf_inertial(1) + "</link>";
   refused(sdf("<link name='a'><inertial><mass>2kg</mass></inertial></link>"), "\"2kg\" is not finite");
   refused(sdf("<link name='a'><inertial><mass>1e999</mass></inertial></link>"), "1e999");
   refused(sdf("<link name='a'><inertial><mass>1 2</mass></inertial></link>"), "holds 2 numbers: \"1 2\" (accepted: 1 number)");
-  refused(sdf("<link name='a'><pose>1 2 3</pose>" + inertial(1) + "</link>"), "holds 3 numbers");
+  refused(sdf("<link name='a'><pose>1 2 3</pose>" + sdf_inertial(1) + "</link>"), "holds 3 numbers");
   refused(sdf(a + "<joint name='j' type='revolute'><parent>a</parent><child>nobody</child><axis><xyz>0 0 1</xyz></axis></joint>"), "nobody");
   refused(sdf(a + a), "a");
   refused(sdf(""), "libsdformat");
   refused("<sdf version='1.9'/>", "no link");
-  refused(sdf(a + "<link name='b'>" + inertial(1) + "</link><joint name='j' type='universal'><parent>a</parent><child>b</child>"
+  refused(sdf(a + "<link name='b'>" + sdf_inertial(1) + "</link><joint name='j' type='universal'><parent>a</parent><child>b</child>"
     "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2></joint>"), "parallel");
   Model plain;  // what has no part in M, J and contacts is not judged
   const std::string odd = "<visual name='v'><geometry><box><size>1 1 1</size></box></geometry><material><script><name>x</name></script></material></visual><sensor name='s' type='crystal_ball'/>"
                           "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry><surface><friction><ode><mu>-1</mu></ode></friction></surface></collision>";
-  const Robot kept = read(write("sdf/odd.sdf", sdf("<link name='a'>" + inertial(1) + odd + "</link>")), plain);
+  const Robot kept = read_robot(write_sdf("sdf/odd.sdf", sdf("<link name='a'>" + sdf_inertial(1) + odd + "</link>")), plain);
   EXPECT_TRUE(kept.warnings.empty());
   ASSERT_EQ(plain.bodies[0].shapes.size(), 1u);
   EXPECT_LT(plain.bodies[0].shapes[0].friction, 0);
   Model model;
-  const Robot r = read(write("sdf/include.sdf", "<sdf version='1.9'><world name='w'><include><uri>model://no_such_model</uri></include><model name='m'>" + a + "</model></world></sdf>"), model);
+  const Robot r = read_robot(write_sdf("sdf/include.sdf", "<sdf version='1.9'><world name='w'><include><uri>model://no_such_model</uri></include><model name='m'>" + a + "</model></world></sdf>"), model);
   ASSERT_FALSE(r.warnings.empty());
   EXPECT_EQ(r.warnings[0].kind, "include not found");
   Model twice;  // libsdformat takes the first in silence
-  const Robot first = read(write("sdf/twice.sdf", sdf("<link name='a'><inertial><mass>2</mass><mass>3</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>")), twice);
+  const Robot first = read_robot(write_sdf("sdf/twice.sdf", sdf("<link name='a'><inertial><mass>2</mass><mass>3</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>")), twice);
   ASSERT_EQ(first.warnings.size(), 1u);
   EXPECT_EQ(first.warnings[0].kind, "given twice");
   EXPECT_EQ(twice.bodies[0].mass, 2);
   RobotOptions strict;
   strict.strict = true;
-  EXPECT_THROW((void)read(temporary("sdf/include.sdf").string(), model, strict), ModelError);
+  EXPECT_THROW((void)read_robot(temporary("sdf/include.sdf").string(), model, strict), ModelError);
 }
 
 }  // namespace
