@@ -1,9 +1,9 @@
 #include "algorithms/constraints.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "algorithms/message.h"
 #include "algorithms/regularity.h"
 
 namespace delassus {
@@ -20,7 +20,7 @@ Index body_count(const Model& model) { return static_cast<Index>(model.bodies.si
 void check_range(const Model& model, Index body, Index lowest, const std::string& file, const std::string& element) {
   if (body < lowest || body >= body_count(model))
     throw ModelError(file, element, "body " + std::to_string(body) + " does not exist",
-                     (lowest == ground ? "-1 (the world) to " : "0 to ") + std::to_string(body_count(model) - 1));
+                     (lowest == ground ? "-1 (the world) to " : "0 to ") + std::to_string(body_count(model) - 1) + "; add the bodies first");
 }
 
 void check_frames(const Model& model, const Constraint& c, const std::string& file, const std::string& element) {
@@ -32,11 +32,11 @@ void check_frames(const Model& model, const Constraint& c, const std::string& fi
     throw ModelError(file, element,
                      c.a.body == ground ? "both frames are fixed in the world"
                                         : "both frames are on " + model.bodies[c.a.body].name,
-                     "frames on two different bodies, or on one body and the world");
+                     "frames on two different bodies, or on one body and the world; move one frame to another body");
 }
 
 void check_terms(const Model& model, const Constraint& c, const std::string& file, const std::string& element) {
-  if (c.terms.empty()) throw ModelError(file, element, "has no terms", "1 or more");
+  if (c.terms.empty()) throw ModelError(file, element, "has no terms", "1 or more; add a term, or leave the constraint out");
   bool moves = false;
   for (const Constraint::Term& t : c.terms) {
     check_range(model, t.body, c.kind == Kind::general ? ground : 0, file, element);
@@ -44,17 +44,17 @@ void check_terms(const Model& model, const Constraint& c, const std::string& fil
     if (c.kind == Kind::general) {
       if (t.K.rows() < 1 || t.K.rows() != c.terms.front().K.rows() || t.K.cols() != 6)
         throw ModelError(file, element, "K of " + std::to_string(t.K.rows()) + " x " + std::to_string(t.K.cols()),
-                         "the same number of rows (1 or more) in every term, 6 columns");
-      if (!t.K.allFinite()) throw ModelError(file, element, "K is not finite", "finite numbers");
+                         "the same number of rows (1 or more) in every term, 6 columns; fill up with rows of 0");
+      if (!t.K.allFinite()) throw ModelError(file, element, "K is not finite", "finite numbers; compute it again from finite ones");
       continue;
     }
     const Index n = dof_count(model.bodies[t.body].joint.type);
     if (t.dof < 0 || t.dof >= n)
       throw ModelError(file, element, "degree of freedom " + std::to_string(t.dof) + " of " + model.bodies[t.body].name,
-                       "0 to " + std::to_string(n - 1));
-    if (!std::isfinite(t.coefficient)) throw ModelError(file, element, "coefficient is not finite", "finite numbers");
+                       "0 to " + std::to_string(n - 1) + "; count from 0");
+    if (!std::isfinite(t.coefficient)) throw ModelError(file, element, "coefficient is not finite, " + number_text(t.coefficient), "finite numbers; leave the term out for 0");
   }
-  if (!moves) throw ModelError(file, element, "every term is on the ground", "a term on a body");
+  if (!moves) throw ModelError(file, element, "every term is on the ground", "a term on a body; leave the constraint out when nothing moves");
 }
 
 }  // namespace
@@ -87,19 +87,16 @@ void validate_constraint(const Model& model, const Constraint& c, const std::str
     const Index n = dof_count(model.bodies[c.a.body].joint.type);
     if (c.dof < 0 || c.dof >= n)
       throw ModelError(file, element, "degree of freedom " + std::to_string(c.dof) + " of " + model.bodies[c.a.body].name,
-                       "0 to " + std::to_string(n - 1));
-    if (c.side != 1 && c.side != -1) throw ModelError(file, element, "side " + std::to_string(c.side), "1 (lower) or -1 (upper)");
+                       "0 to " + std::to_string(n - 1) + "; count from 0");
+    if (c.side != 1 && c.side != -1) throw ModelError(file, element, "side " + std::to_string(c.side), "1 (lower) or -1 (upper); two constraints for both sides");
   }
-  if (c.kind == Kind::distance && (!(c.length > 0) || std::isinf(c.length))) {
-    char digits[32];
-    const char* end = std::to_chars(digits, digits + sizeof digits, c.length).ptr;
-    throw ModelError(file, element + " length", std::string(static_cast<const char*>(digits), end) + " m", "finite and above 0 m");
-  }
+  if (c.kind == Kind::distance && (!(c.length > 0) || std::isinf(c.length)))
+    throw ModelError(file, element + " length", number_text(c.length) + " m", "finite and above 0 m; a point constraint holds two points together");
   if (!std::isfinite(c.friction))
-    throw ModelError(file, element + " friction", "not finite", "a finite number, negative: not given");
+    throw ModelError(file, element + " friction", number_text(c.friction), "a finite number; a negative one stands for none");
   if (c.loop && !has_closure(c.kind))
     throw ModelError(file, element, "is marked as a loop but has no position level",
-                     "loop only on kinds between two frames");
+                     "loops between two frames only; leave the mark out");
 }
 
 template <class T> End<T> end_of(const Poses<T>& poses, const Frame& frame) {

@@ -3,29 +3,18 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <unordered_set>
 
+#include "algorithms/closest.h"
 #include "algorithms/constraints.h"
+#include "algorithms/message.h"
 #include "algorithms/regularity.h"
 
 namespace delassus {
 namespace {
 
 constexpr double eps = 0x1p-53;
-
-/// The shortest decimal number that reads back as the same double.
-std::string text(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
-template <class V> std::string text(const V& x, int) {
-  std::string s;
-  for (Index i = 0; i < x.size(); ++i) s += (i ? " " : "") + text(x[i]);
-  return s;
-}
 
 struct JointRow {
   std::string_view name;
@@ -61,7 +50,7 @@ constexpr std::array<KindRow, 14> kind_table{{{"point", 3},
 /// Unit length to 30 ε · 3 (three squares are added).
 void check_unit(const Vector3<double>& axis, const std::string& file, const std::string& element) {
   const double error = std::abs(axis.squaredNorm() - 1);
-  if (!(error < 30 * eps * 3)) throw ModelError(file, element, "(" + text(axis, 0) + ") is not a unit vector", "length 1");
+  if (!(error < 30 * eps * 3)) throw ModelError(file, element, "(" + numbers_text(axis) + ") is not a unit vector", "length 1; divide it by its length");
 }
 
 /// Only finite, non-negative numbers, one per degree of freedom or none.
@@ -69,25 +58,25 @@ void check_per_dof(const std::vector<double>& values, Index n, bool infinite, co
                    const std::string& file, const std::string& element) {
   if (!values.empty() && static_cast<Index>(values.size()) != n)
     throw ModelError(file, element, std::to_string(values.size()) + " values",
-                     std::to_string(n) + ", one per degree of freedom, or none");
+                     std::to_string(n) + ", one per degree of freedom, or none; leave the others out");
   for (const double v : values)
     if (!(v >= 0) || (!infinite && std::isinf(v)))
-      throw ModelError(file, element, text(v) + " " + unit, std::string(infinite ? "" : "finite and ") + "0 or more " + unit);
+      throw ModelError(file, element, number_text(v) + " " + unit, std::string(infinite ? "" : "finite and ") + "0 or more " + unit + (infinite ? "; leave it out for none" : "; leave it out for 0"));
 }
 
 void check_limits(const Joint& joint, Index n, const std::string& file, const std::string& element) {
   for (const auto* limit : {&joint.lower, &joint.upper}) {
     if (!limit->empty() && static_cast<Index>(limit->size()) != n)
       throw ModelError(file, element + " limits", std::to_string(limit->size()) + " values",
-                       std::to_string(n) + ", one per degree of freedom, or none");
+                       std::to_string(n) + ", one per degree of freedom, or none; infinity where there is no limit");
     for (const double v : *limit)
-      if (std::isnan(v)) throw ModelError(file, element + " limits", "nan", "numbers [rad or m], infinity for none");
+      if (std::isnan(v)) throw ModelError(file, element + " limits", "nan", "numbers [rad or m]; infinity where there is no limit");
   }
   if (joint.lower.empty() || joint.upper.empty()) return;
   for (Index k = 0; k < n; ++k)
     if (joint.lower[k] > joint.upper[k])
-      throw ModelError(file, element + " limits", "lower " + text(joint.lower[k]) + " above upper " + text(joint.upper[k]),
-                       "lower at most upper [rad or m]");
+      throw ModelError(file, element + " limits", "lower " + number_text(joint.lower[k]) + " above upper " + number_text(joint.upper[k]),
+                       "lower at most upper [rad or m]; exchange them, or leave both out");
 }
 
 void check_joint(const Joint& joint, const std::string& file, const std::string& body) {
@@ -99,7 +88,7 @@ void check_joint(const Joint& joint, const std::string& file, const std::string&
   if (joint.type == JointType::universal) {
     check_unit(joint.axis2, file, element + " axis2");
     if (!(joint.axis.cross(joint.axis2).norm() > 30 * eps * 3))
-      throw ModelError(file, element + " axis2", "is parallel to the first axis", "two independent axes");
+      throw ModelError(file, element + " axis2", "is parallel to the first axis", "two independent axes; a revolute joint turns about one");
   }
   check_per_dof(joint.armature, n, false, "kg m^2 or kg", file, element + " armature");
   check_per_dof(joint.damping, n, false, "N m s/rad or N s/m", file, element + " damping");
@@ -113,43 +102,43 @@ void check_joint(const Joint& joint, const std::string& file, const std::string&
 void check_inertia(const Matrix3<double>& I, const std::string& file, const std::string& element) {
   const double asymmetry = (I - I.transpose()).cwiseAbs().maxCoeff();
   if (!(asymmetry <= 30 * eps * 3 * I.cwiseAbs().maxCoeff()))
-    throw ModelError(file, element, "is not symmetric, by " + text(asymmetry) + " kg m^2", "a symmetric matrix");
+    throw ModelError(file, element, "is not symmetric, by " + number_text(asymmetry) + " kg m^2", "a symmetric matrix; give (I + transpose of I) / 2 when both halves are meant");
 }
 
 /// A sphere or capsule may be a point or a line; boxes and cylinders have a volume.
 void check_shape(const Shape& shape, const std::string& file, const std::string& element) {
   check_pose(shape.placement, file, element + " placement");
   if (shape.kind == Shape::Kind::hull && (!shape.points || shape.points->empty()))
-    throw ModelError(file, element, "a hull without points", "1 or more points [m]");
+    throw ModelError(file, element, "a hull without points", "1 or more points [m]; a sphere of radius 0 is a point");
   const Index sizes = shape.kind == Shape::Kind::sphere ? 1 : shape.kind == Shape::Kind::box ? 3 : shape.kind == Shape::Kind::hull ? 0 : 2;
   const bool round = shape.kind == Shape::Kind::sphere || shape.kind == Shape::Kind::capsule;
   for (Index k = 0; k < sizes; ++k)
     if (!(round ? shape.size[k] >= 0 : shape.size[k] > 0) || std::isinf(shape.size[k]))
-      throw ModelError(file, element + " size", text(shape.size[k]) + " m", round ? "finite and 0 m or more" : "finite and above 0 m");
+      throw ModelError(file, element + " size", number_text(shape.size[k]) + " m", round ? "finite and 0 m or more; leave the shape out to touch nothing" : "finite and above 0 m; leave the shape out to touch nothing");
   if (!std::isfinite(shape.friction))
-    throw ModelError(file, element + " friction", text(shape.friction), "a finite coefficient, negative: not given");
+    throw ModelError(file, element + " friction", number_text(shape.friction), "a finite coefficient; a negative one stands for none");
 }
 
 void check_parent(Index parent, Index i, const std::string& file, const std::string& name) {
   if (parent < ground || parent >= i)
     throw ModelError(file, name, "parent " + std::to_string(parent) + " is not an earlier body",
-                     "-1 (ground) to " + std::to_string(i - 1));
+                     "-1 (ground) to " + std::to_string(i - 1) + "; add parents before their children");
 }
 
 /// Sizes and offsets of the body arrays, parents before children, names used once.
 void check_bodies(const Model& model, const std::string& file) {
   const Index n = static_cast<Index>(model.bodies.size());
   if (static_cast<Index>(model.first_q.size()) != n + 1 || static_cast<Index>(model.first_dof.size()) != n + 1)
-    throw ModelError(file, "model", "first_q and first_dof do not fit the bodies", "bodies appended by Model::add");
+    throw ModelError(file, "model", "first_q and first_dof do not fit the bodies", "as many entries as bodies, and one more; append bodies by Model::add");
   std::unordered_set<std::string_view> names;
   for (Index i = 0; i < n; ++i) {
     const Body& body = model.bodies[i];
     check_parent(body.parent, i, file, body.name);
     if (model.first_q[i + 1] - model.first_q[i] != q_size(body.joint.type) ||
         model.first_dof[i + 1] - model.first_dof[i] != dof_count(body.joint.type))
-      throw ModelError(file, body.name, "first_q or first_dof does not fit the joint type", "bodies appended by Model::add");
+      throw ModelError(file, body.name, "first_q or first_dof does not fit the joint type", "the entries of its joint type; append bodies by Model::add");
     if (!body.name.empty() && !names.insert(body.name).second)
-      throw ModelError(file, body.name, "two bodies have this name", "distinct names");
+      throw ModelError(file, body.name, "two bodies have this name", "distinct names; rename one, or leave its name empty");
     validate_body(body, file);
   }
 }
@@ -158,10 +147,10 @@ void check_bodies(const Model& model, const std::string& file) {
 
 void check_pose(const Pose<double>& pose, const std::string& file, const std::string& element) {
   if (!pose.rotation.allFinite() || !pose.translation.allFinite())
-    throw ModelError(file, element, "is not finite", "finite numbers [m]");
+    throw ModelError(file, element, "is not finite", "finite numbers [m]; compute it again from finite ones");
   const Matrix3<double> error = pose.rotation.transpose() * pose.rotation - Matrix3<double>::Identity();
   if (!(error.cwiseAbs().maxCoeff() < 30 * eps * 3) || !(pose.rotation.determinant() > 0))
-    throw ModelError(file, element, "rotation is not a proper orthogonal matrix", "orthonormal columns, determinant +1");
+    throw ModelError(file, element, "rotation is not a proper orthogonal matrix", "orthonormal columns, determinant +1; take it from a unit quaternion");
 }
 
 Index q_size(JointType t) { return joint_table[static_cast<std::size_t>(t)].q; }
@@ -174,9 +163,21 @@ Index row_count(const Model& model, const Constraint& c) {
   if (rows >= 0) return rows;
   if (c.kind == Constraint::Kind::general) return c.terms.empty() ? 0 : c.terms.front().K.rows();
   if (c.a.body < 0 || c.a.body >= static_cast<Index>(model.bodies.size()))
-    throw ModelError("", c.name, "acts on the joint of body " + std::to_string(c.a.body), "a body of the model");
+    throw ModelError("", c.name, "acts on the joint of body " + std::to_string(c.a.body), "a body of the model; 0 to " + std::to_string(static_cast<Index>(model.bodies.size()) - 1));
   return dof_count(model.bodies[c.a.body].joint.type);
 }
+
+namespace {
+
+/// The candidates, after the one that was probably meant.
+std::string accepted_of(const std::string& wanted, const std::vector<Body>& bodies, const std::string& candidates) {
+  std::vector<std::string_view> names;
+  for (const Body& body : bodies) names.push_back(body.name);
+  const std::string meant = did_you_mean(wanted, names);
+  return candidates + "; " + (meant.empty() ? "names are robot/link" : meant.substr(0, meant.size() - 1));
+}
+
+}  // namespace
 
 Index Model::find(const std::string& wanted) const {
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -185,7 +186,7 @@ Index Model::find(const std::string& wanted) const {
   constexpr std::size_t listed = 50;
   for (std::size_t i = 0; i < std::min(bodies.size(), listed); ++i) candidates += (i ? ", " : "") + bodies[i].name;
   if (bodies.size() > listed) candidates += ", and " + std::to_string(bodies.size() - listed) + " more";
-  throw ModelError("", wanted, "no body has this name", candidates.empty() ? "the model has no body" : candidates);
+  throw ModelError("", wanted, "no body has this name", candidates.empty() ? "none, the model has no body; add it first" : accepted_of(wanted, bodies, candidates));
 }
 
 Index Model::add(Body body) {
@@ -203,8 +204,8 @@ void validate_body(const Body& body, const std::string& file) {
   for (std::size_t k = 0; k < body.shapes.size(); ++k)
     check_shape(body.shapes[k], file, body.name + " shape " + std::to_string(k));
   if (!std::isfinite(body.mass) || !body.com.allFinite() || !body.inertia.allFinite())
-    throw ModelError(file, body.name, "mass, com or inertia is not finite", "finite numbers [kg, m, kg m^2]");
-  if (body.mass < 0) throw ModelError(file, body.name + " mass", text(body.mass) + " kg", "0 kg or more");
+    throw ModelError(file, body.name, "mass, com or inertia is not finite", "finite numbers [kg, m, kg m^2]; check the units of the file they come from");
+  if (body.mass < 0) throw ModelError(file, body.name + " mass", number_text(body.mass) + " kg", "0 kg or more; a massless body needs an armature in its joint or massive descendants");
   check_inertia(body.inertia, file, body.name + " inertia");
 }
 

@@ -1,9 +1,11 @@
 #include "models/scene.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -36,7 +38,7 @@ Scene SceneLoader::run() {
   if (root_.has("strict")) strict_ = root_.at("strict").boolean() || strict_;
   if (root_.has("pose")) {
     const std::string text = root_.at("pose").text("provisional, recorded");
-    if (text != "provisional" && text != "recorded") root_.at("pose").fail(in_quotes(text) + " is not understood", "provisional, recorded");
+    if (text != "provisional" && text != "recorded") root_.at("pose").fail(in_quotes(text) + " is not understood", did_you_mean(text, std::array{"provisional", "recorded"}) + "provisional, recorded; leave the key out for recorded");
     scene_.provisional_pose = text == "provisional";
   }
   if (root_.has("gravity")) {
@@ -54,7 +56,7 @@ Scene SceneLoader::run() {
     for (const Yaml& y : root_.at("robots").list("a list of {name, urdf, ...}")) read_robot(y);
   if (root_.has("boxes"))
     for (const Yaml& y : root_.at("boxes").list("a list of {name, mass, size, ...}")) read_box(y);
-  if (scene_.model.dofs() == 0) root_.fail("nothing in the scene can move", "robots or boxes");
+  if (scene_.model.dofs() == 0) root_.fail("nothing in the scene can move", "robots or boxes; a robot with a joint, or base: free");
   if (root_.has("constraints"))
     for (const Yaml& y : root_.at("constraints").list("a list of {kind, ...}")) read_constraint(y);
   poses(scene_.model, scene_.q, poses_);
@@ -77,7 +79,7 @@ void SceneLoader::check_finite() const {
   double farthest = 1, inertia = 0;
   for (const auto& S : p.S) farthest = std::max(farthest, S.cwiseAbs().maxCoeff());
   const auto fail = [&](const std::string& element) {
-    throw ModelError(path_, element, "its numbers are so large that M or J overflows", "masses [kg] and lengths [m] whose products stay below 1.8e308");
+    throw ModelError(path_, element, "its numbers are so large that M or J overflows", "masses [kg] and lengths [m] whose products stay below 1.8e308; check their units");
   };
   for (std::size_t i = 0; i < p.H.size(); ++i) {
     inertia += p.H[i].cwiseAbs().maxCoeff();

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -29,12 +29,12 @@ Kind kind_of(const Yaml& y) {
 /// The rotation with the given z and/or x directions; x is made orthogonal to z.
 Matrix3<double> axes_rotation(const Yaml& y) {
   y.keys({"x", "z"});
-  if (!y.has("z") && !y.has("x")) y.fail("gives no axis", "{z: [...]}, {x: [...]} or both");
+  if (!y.has("z") && !y.has("x")) y.fail("gives no axis", "{z: [...]}, {x: [...]} or both; leave it out for the axes of the link");
   if (!y.has("x")) return frame_about(y.at("z").direction());
   const Vector3<double> x0 = y.at("x").direction();
   const Vector3<double> z = y.has("z") ? y.at("z").direction() : Vector3<double>(frame_about(x0).col(0));
   const Vector3<double> x = x0 - x0.dot(z) * z;
-  if (x.norm() <= 30 * std::numeric_limits<double>::epsilon()) y.fail("x is parallel to z", "two different directions");
+  if (x.norm() <= 30 * std::numeric_limits<double>::epsilon()) y.fail("x is parallel to z", "two different directions; leave one of them out");
   Matrix3<double> R;
   R << x.normalized(), z.cross(x.normalized()), z;
   return R;
@@ -42,7 +42,7 @@ Matrix3<double> axes_rotation(const Yaml& y) {
 
 /// Orientation from `rpy` or `axes`; no value when neither is given.
 std::optional<Matrix3<double>> orientation(const Yaml& y, const char* rpy, const char* axes) {
-  if (y.has(rpy) && y.has(axes)) y.fail(std::string(rpy) + " and " + axes + " are both given", "one of them");
+  if (y.has(rpy) && y.has(axes)) y.fail(std::string(rpy) + " and " + axes + " are both given", "one of them; both say the orientation");
   if (y.has(rpy)) return rotation_rpy(y.at(rpy).vector3(" [rad]"));
   if (y.has(axes)) return axes_rotation(y.at(axes));
   return std::nullopt;
@@ -66,19 +66,16 @@ SceneLoader::End SceneLoader::end_of(const Yaml& y) const {
   if (it == scene_.frames.end()) {
     std::vector<std::string_view> names;
     for (const auto& [frame, place] : scene_.frames) names.push_back(frame);
-    y.fail(in_quotes(text) + " does not exist", did_you_mean(text, names) + "robot/link, a box, world");
+    y.fail(in_quotes(text) + " does not exist", did_you_mean(text, names) + "robot/link, a box, world; `delassus describe SCENE --json` names the bodies");
   }
   return {it->second, text};
 }
 
 const Robot& SceneLoader::robot_of(const Yaml& y) const {
   const std::string text = y.text("a robot of the scene");
-  std::string all;
-  for (const Robot& r : robots_) {
+  for (const Robot& r : robots_)
     if (r.name == text) return r;
-    if (all.size() < 200) all += (all.empty() ? "" : ", ") + in_quotes(r.name);
-  }
-  y.fail("robot " + in_quotes(text) + " does not exist", all.empty() ? "no robot is in the scene" : all);
+  y.fail("robot " + in_quotes(text) + " does not exist", robots_.empty() ? "no robot, the scene has none; add it to robots" : accepted_names(text, robots_) + "; the name of an entry of robots");
 }
 
 Index SceneLoader::joint_of(const Yaml& y) const {
@@ -91,7 +88,7 @@ Index SceneLoader::joint_of(const Yaml& y) const {
   std::vector<std::string> names;
   for (const Robot& r : robots_)
     for (const auto& [joint, body] : r.joints) names.push_back(r.name + "/" + joint);
-  y.fail("joint " + in_quotes(text) + " does not exist or is fixed", did_you_mean(text, names) + "robot/joint of a moving joint");
+  y.fail("joint " + in_quotes(text) + " does not exist or is fixed", did_you_mean(text, names) + "robot/joint of a moving joint; `delassus describe` lists them");
 }
 
 void SceneLoader::add(const Yaml& y, Constraint c) {
@@ -105,13 +102,13 @@ void SceneLoader::read_two_ends(const Yaml& y, Constraint c) {
   if (c.kind == Kind::distance) y.keys({"kind", "name", "of", "at", "to", "to_at", "length", "loop", "tolerance", "damping"});
   else y.keys({"kind", "name", "of", "at", "rpy", "axes", "to", "to_at", "to_rpy", "to_axes", "loop", "tolerance", "damping"});
   const End a = end_of(y.at("of")), b = end_of(y.at("to"));
-  if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and world");
+  if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and world; links joined by fixed joints are one body");
   c.name = std::string(name(c.kind)) + " " + a.name + " - " + b.name;
   Pose<double> at, to;
   if (y.has("at")) at.translation = y.at("at").vector3(" [m]");
   if (const auto R = orientation(y, "rpy", "axes")) at.rotation = *R;
   if (y.has("to_at")) to.translation = y.at("to_at").vector3(" [m]");
-  else if (c.kind == Kind::distance) y.fail("key to_at is missing", "to_at: [x, y, z] [m]");
+  else if (c.kind == Kind::distance) y.fail("key to_at is missing", "to_at: [x, y, z] [m]; a distance needs both points");
   const auto to_rotation = orientation(y, "to_rpy", "to_axes");
   if (to_rotation) to.rotation = *to_rotation;
   c.a = {a.frame.body, a.frame.placement * at};
@@ -119,7 +116,7 @@ void SceneLoader::read_two_ends(const Yaml& y, Constraint c) {
   c.loop = y.has("loop") ? y.at("loop").boolean() : a.frame.body != ground && b.frame.body != ground;
   if (y.has("tolerance")) {
     c.tolerance = y.at("tolerance").non_negative(" [m or rad]");
-    if (!c.loop) y.at("tolerance").fail("the constraint is no loop", "tolerance only with loop: true");
+    if (!c.loop) y.at("tolerance").fail("the constraint is no loop", "tolerance only with loop: true; leave it out, or close the loop");
   }
   if (y.has("length")) c.length = y.at("length").positive(" [m]");
   const bool length = c.kind == Kind::distance && !y.has("length");
@@ -136,7 +133,7 @@ void SceneLoader::fill_open(bool loops) {
     if (o.translation) c.b.placement.translation = a.translation;
     if (o.rotation) c.b.placement.rotation = a.rotation;
     if (o.length) c.length = (a.translation - c.b.placement.translation).norm();
-    if (c.kind == Kind::distance && !(c.length > 0)) o.at.fail("the two points coincide", "points apart, or length: > 0 [m]");
+    if (c.kind == Kind::distance && !(c.length > 0)) o.at.fail("the two points coincide", "points apart, or length: > 0 [m]; kind: point holds two points together");
   }
 }
 
@@ -144,13 +141,13 @@ void SceneLoader::read_joints(const Yaml& y, Kind kind) {
   const bool friction = kind == Kind::joint_friction;
   if (friction) y.keys({"kind", "name", "robot", "joint", "effort", "damping"});
   else y.keys({"kind", "name", "robot", "joint", "damping"});
-  if (y.has("robot") == y.has("joint")) y.fail("needs one of robot and joint", "robot: NAME for all its joints, joint: robot/joint for one");
+  if (y.has("robot") == y.has("joint")) y.fail("needs one of robot and joint", "robot: NAME for all its joints; joint: robot/joint for one");
   std::vector<Index> bodies;
   if (y.has("joint")) bodies.push_back(joint_of(y.at("joint")));
   else
     for (const auto& [joint, body] : robot_of(y.at("robot")).joints) bodies.push_back(body);
   std::sort(bodies.begin(), bodies.end());
-  if (bodies.empty()) y.at("robot").fail("the robot has no moving joint", "a robot with joints");
+  if (bodies.empty()) y.at("robot").fail("the robot has no moving joint", "a robot with joints; leave the constraint out");
   for (const Index i : bodies) {
     const Joint& joint = scene_.model.bodies[static_cast<std::size_t>(i)].joint;
     Constraint c;
@@ -165,12 +162,12 @@ void SceneLoader::read_joints(const Yaml& y, Kind kind) {
 /// One row for each finite limit asked for: of one degree of freedom and side, or of all.
 void SceneLoader::read_limits(const Yaml& y) {
   y.keys({"kind", "name", "robot", "joint", "dof", "side", "damping"});
-  if (y.has("robot") == y.has("joint")) y.fail("needs one of robot and joint", "robot: NAME for all its limits, joint: robot/joint for one joint");
-  if (y.has("robot") && y.has("dof")) y.at("dof").fail("is given for a whole robot", "dof only with joint");
+  if (y.has("robot") == y.has("joint")) y.fail("needs one of robot and joint", "robot: NAME for all its limits; joint: robot/joint for one joint");
+  if (y.has("robot") && y.has("dof")) y.at("dof").fail("is given for a whole robot", "dof only with joint; name the joint, or leave dof out");
   int side = 0;  // both
   if (y.has("side")) {
     const std::string text = y.at("side").text("lower, upper");
-    if (text != "lower" && text != "upper") y.at("side").fail(in_quotes(text) + " is no side", "lower, upper; both when absent");
+    if (text != "lower" && text != "upper") y.at("side").fail(in_quotes(text) + " is no side", did_you_mean(text, std::array{"lower", "upper"}) + "lower, upper; leave it out for both");
     side = text == "lower" ? 1 : -1;
   }
   std::vector<Index> bodies;
@@ -182,7 +179,7 @@ void SceneLoader::read_limits(const Yaml& y) {
   for (const Index i : bodies) {
     const Joint& joint = scene_.model.bodies[static_cast<std::size_t>(i)].joint;
     const Index n = dof_count(joint.type), dof = y.has("dof") ? y.at("dof").index() : -1;
-    if (dof >= n) y.at("dof").fail("the joint has " + std::to_string(n) + " degrees of freedom", "0 to " + std::to_string(n - 1));
+    if (dof >= n) y.at("dof").fail(std::to_string(dof) + ": the joint has " + std::to_string(n) + " degrees of freedom", "0 to " + std::to_string(n - 1) + "; count from 0");
     for (Index k = 0; k < n; ++k)
       for (const int s : {1, -1}) {
         const std::vector<double>& limit = s > 0 ? joint.lower : joint.upper;
@@ -199,7 +196,7 @@ void SceneLoader::read_limits(const Yaml& y) {
       }
   }
   if (scene_.model.constraints.size() == before)
-    y.at(y.has("joint") ? "joint" : "robot").fail("has no such limit", "a joint with a finite limit on that side, or a robot with one");
+    y.at(y.has("joint") ? "joint" : "robot").fail("has no such limit", "a joint with a finite limit on that side, or a robot with one; `delassus describe` shows the limits");
 }
 
 void SceneLoader::read_coupling(const Yaml& y, Constraint c) {
@@ -211,12 +208,12 @@ void SceneLoader::read_coupling(const Yaml& y, Constraint c) {
     term.body = joint_of(t.at("joint"));
     term.dof = t.has("dof") ? t.at("dof").index() : 0;
     const Index n = dof_count(scene_.model.bodies[static_cast<std::size_t>(term.body)].joint.type);
-    if (term.dof >= n) t.at("dof").fail("the joint has " + std::to_string(n) + " degrees of freedom", "0 to " + std::to_string(n - 1));
-    if (!seen.emplace(term.body, term.dof).second) t.fail("this degree of freedom appears twice", "each one once");
+    if (term.dof >= n) t.at("dof").fail(std::to_string(term.dof) + ": the joint has " + std::to_string(n) + " degrees of freedom", "0 to " + std::to_string(n - 1) + "; count from 0");
+    if (!seen.emplace(term.body, term.dof).second) t.fail("this degree of freedom appears twice", "each one once; add the coefficients up");
     term.coefficient = t.at("coefficient").number("");
     c.terms.push_back(std::move(term));
   }
-  if (c.terms.empty()) y.at("terms").fail("is empty", "at least one {joint, dof, coefficient}");
+  if (c.terms.empty()) y.at("terms").fail("is empty", "at least one {joint, dof, coefficient}; leave the constraint out for none");
   c.name = "coupling " + std::to_string(scene_.model.constraints.size());
   add(y, std::move(c));
 }
@@ -227,24 +224,24 @@ void SceneLoader::read_general(const Yaml& y, Constraint c) {
   for (const Yaml& t : y.at("terms").list("a list of {of, K}")) {
     t.keys({"of", "K"});
     const End end = end_of(t.at("of"));
-    if (end.frame.body == ground) t.at("of").fail(in_quotes(end.name) + " is fixed to the world", "a link that moves");
+    if (end.frame.body == ground) t.at("of").fail(in_quotes(end.name) + " is fixed to the world", "a link that moves; leave this term out");
     const MatrixX<double> K = in_body(t.at("K").matrix(rows, 6, ""), end.frame.placement);
     rows = K.rows();
     for (const Constraint::Term& other : c.terms)
-      if (other.body == end.frame.body) t.at("of").fail(in_quotes(end.name) + " belongs to a body that already has a block", "each body once");
+      if (other.body == end.frame.body) t.at("of").fail(in_quotes(end.name) + " belongs to a body that already has a block", "each body once; add the blocks up");
     c.terms.push_back({end.frame.body, 0, 1, K});
   }
-  if (c.terms.empty()) y.at("terms").fail("is empty", "at least one {of, K}");
+  if (c.terms.empty()) y.at("terms").fail("is empty", "at least one {of, K}; leave the constraint out for none");
   c.name = "general " + std::to_string(scene_.model.constraints.size());
   add(y, std::move(c));
 }
 
 void SceneLoader::read_constraint(const Yaml& y) {
-  if (!y.is_map()) y.fail("is no mapping", "{kind: ..., ...}");
+  if (!y.is_map()) y.fail("is no mapping", "{kind: ..., ...}; begin the entry with a dash and braces");
   Constraint c;
   c.kind = kind_of(y.at("kind"));
   switch (c.kind) {
-    case Kind::contact: y.fail("a contact is no entry of constraints", "an entry of contacts");
+    case Kind::contact: y.fail("a contact is no entry of constraints", "an entry of contacts; move it there, without kind");
     case Kind::joint_friction:
     case Kind::joint_lock: return read_joints(y, c.kind);
     case Kind::joint_limit: return read_limits(y);

@@ -1,5 +1,8 @@
+#include <array>
+
 #include <Eigen/Eigenvalues>
 
+#include "algorithms/closest.h"
 #include "models/mesh.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
@@ -9,11 +12,11 @@ namespace delassus {
 void SceneLoader::read_contact(const Yaml& y, double friction) {
   y.keys({"name", "of", "at", "to", "normal", "friction", "damping"});
   const End a = end_of(y.at("of")), b = y.has("to") ? end_of(y.at("to")) : End{{}, "ground"};
-  if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and ground");
-  if (b.name == "ground" && !y.has("normal") && !scene_.has_ground) y.fail("the scene has no ground", "ground: {z: ...}, or normal: [x, y, z]");
+  if (a.frame.body == b.frame.body) y.fail(in_quotes(a.name) + " and " + in_quotes(b.name) + " are one body", "two different bodies, or one and ground; links joined by fixed joints are one body");
+  if (b.name == "ground" && !y.has("normal") && !scene_.has_ground) y.fail("the scene has no ground", "ground: {z: ...}, or normal: [x, y, z]; give one of them");
   Vector3<double> normal(0, 0, 1);
   if (y.has("normal")) normal = y.at("normal").direction();
-  else if (b.frame.body != ground) y.fail("key normal is missing", "normal: [x, y, z] in world axes, from `to` to `of`");
+  else if (b.frame.body != ground) y.fail("key normal is missing", "normal: [x, y, z] in world axes; it points from `to` to `of`");
   const Vector3<double> at = y.has("at") ? y.at("at").vector3(" [m]") : Vector3<double>(0, 0, 0);
   Constraint c;
   c.kind = Constraint::Kind::contact;
@@ -33,7 +36,7 @@ void SceneLoader::detect(const Yaml* y) {
   if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
   Index vertices = 64;
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
-    y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10");
+    y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
   Findings found(strict_);
   if (scene_.has_ground)
     for (const Robot& r : robots_) add_hulls(scene_.model, r, vertices, search.margin, found);
@@ -65,7 +68,7 @@ void SceneLoader::read_contacts(const Yaml& y) {
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);
   } else {
-    y.fail(in_quotes(y.text(accepted)) + " is not understood", accepted);
+    y.fail(in_quotes(y.text(accepted)) + " is not understood", did_you_mean(y.text(accepted), std::array{"detect"}) + accepted + "; leave it out for none");
   }
 }
 
@@ -79,15 +82,15 @@ void SceneLoader::damp(const Yaml& y, Index row, Index rows) {
   }
   const std::vector<Yaml> items = y.list("a number >= 0, a list of " + n + ", or a symmetric block of " + n + " x " + n + unit);
   if (items.empty() || !items[0].is_list()) {
-    if (static_cast<Index>(items.size()) != rows) y.fail("has " + std::to_string(items.size()) + " entries", n + " numbers >= 0" + unit);
+    if (static_cast<Index>(items.size()) != rows) y.fail("has " + std::to_string(items.size()) + " entries", n + " numbers >= 0" + unit + "; one number stands for all");
     for (Index k = 0; k < rows; ++k) entry(k) = items[static_cast<std::size_t>(k)].non_negative(unit);
     return;
   }
   const MatrixX<double> R = y.matrix(rows, rows, unit);
-  if (R != R.transpose()) y.fail("the block is not symmetric", "a symmetric positive semidefinite block" + unit);
+  if (R != R.transpose()) y.fail("the block is not symmetric", "a symmetric positive semidefinite block" + unit + "; both halves must have the same digits");
   const double least = Eigen::SelfAdjointEigenSolver<MatrixX<double>>(R, Eigen::EigenvaluesOnly).eigenvalues()[0];
   if (least < -30 * std::numeric_limits<double>::epsilon() * static_cast<double>(rows) * R.norm())
-    y.fail("the block has the eigenvalue " + number_text(least), "a symmetric positive semidefinite block" + unit);
+    y.fail("the block has the eigenvalue " + number_text(least), "a symmetric positive semidefinite block" + unit + "; make the diagonal larger");
   for (Index k = 0; k < rows; ++k) entry(k) = 0;
   scene_.damping.blocks.push_back({row, R});
 }

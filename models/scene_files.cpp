@@ -1,7 +1,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
@@ -44,12 +44,12 @@ Scene open_scene(const std::string& name, const SceneOptions& options) {
   std::error_code error;
   const bool file = fs::is_regular_file(name, error);
   if (file && begins_with_an_element(name)) return load_robot(name, options);
-  if (options.base) throw ModelError("", "--base", in_quotes(name) + " is no robot's file", "a robot's file; in scenes, base: of the robot");
-  if (options.armature) throw ModelError("", "--armature", in_quotes(name) + " is no robot's file", "a robot's file; in scenes, armature: of the robot");
+  if (options.base) throw ModelError("", "--base", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write base: in the robot's entry");
+  if (options.armature) throw ModelError("", "--armature", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write armature: in the robot's entry");
   if (name.rfind("swimmer:", 0) == 0) {
     const auto links = finite_number(std::string_view(name).substr(8));
     if (!links || *links < 1 || *links > 1e9 || *links != std::floor(*links))
-      throw ModelError("scene", in_quotes(name), "has no number of links", "swimmer:N with a whole number N >= 1");
+      throw ModelError("", "scene " + in_quotes(name), "has no number of links", "swimmer:N with a whole number N >= 1; swimmer:10 has ten links");
     return swimmer(static_cast<Index>(*links));
   }
   const bool path = name.find('/') != std::string::npos || fs::path(name).extension() == ".yaml";
@@ -58,7 +58,7 @@ Scene open_scene(const std::string& name, const SceneOptions& options) {
   if (!name.empty() && !folder.empty() && fs::is_regular_file(stem, error)) return load_scene(stem.string(), options);
   std::string known = "a .yaml file, a robot's file, swimmer:N";
   for (const std::string& s : scene_names()) known += ", " + s;
-  throw ModelError("scene", in_quotes(name), "does not exist", did_you_mean(name, scene_names()) + known);
+  throw ModelError("", "scene " + in_quotes(name), "does not exist", did_you_mean(name, scene_names()) + known + "; check the path");
 }
 
 }  // namespace delassus

@@ -1,8 +1,9 @@
+#include <array>
 #include <filesystem>
 
 #include <Eigen/Geometry>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/scene_loader.h"
 
@@ -12,12 +13,15 @@ namespace {
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 JointType joint_type(const Yaml& y) {
-  const std::string accepted = "revolute, prismatic, spherical, universal, cylindrical, planar, floating";
+  constexpr std::array types{JointType::revolute, JointType::prismatic, JointType::spherical, JointType::universal,
+                             JointType::cylindrical, JointType::planar, JointType::floating};
+  std::vector<std::string_view> names;
+  std::string accepted;
+  for (const JointType t : types) names.push_back(name(t)), accepted.append(accepted.empty() ? "" : ", ").append(name(t));
   const std::string text = y.text(accepted);
-  for (const JointType t : {JointType::revolute, JointType::prismatic, JointType::universal, JointType::planar,
-                            JointType::spherical, JointType::floating, JointType::cylindrical})
+  for (const JointType t : types)
     if (text == name(t)) return t;
-  y.fail(in_quotes(text) + " is no joint type", accepted);
+  y.fail(in_quotes(text) + " is no joint type", did_you_mean(text, names) + accepted + "; spherical for a ball joint");
 }
 
 RobotOptions::Base base_of(const Yaml& y) {
@@ -25,7 +29,7 @@ RobotOptions::Base base_of(const Yaml& y) {
   if (text == "fixed") return RobotOptions::Base::fixed;
   if (text == "free") return RobotOptions::Base::free;
   if (text == "planar") return RobotOptions::Base::planar;
-  y.fail(in_quotes(text) + " is no base", accepted);
+  y.fail(in_quotes(text) + " is no base", did_you_mean(text, std::array{"fixed", "free", "planar"}) + accepted + "; leave it out for free");
 }
 
 /// Solid box of uniform density.
@@ -43,23 +47,23 @@ Body box_body(double mass, const Vector3<double>& size) {
 
 std::string SceneLoader::new_name(const Yaml& y) {
   const std::string accepted = "a name without '/', not world or ground", text = y.text(accepted);
-  if (text.find('/') != std::string::npos || text == "world" || text == "ground") y.fail(in_quotes(text) + " cannot be a name", accepted);
+  if (text.find('/') != std::string::npos || text == "world" || text == "ground") y.fail(in_quotes(text) + " cannot be a name", accepted + "; choose another");
   bool taken = scene_.frames.count(text) > 0;
   for (const Robot& r : robots_) taken = taken || r.name == text;
-  if (taken) y.fail("the name " + in_quotes(text) + " is taken", "unique names of robots and boxes");
+  if (taken) y.fail("the name " + in_quotes(text) + " is taken", "unique names of robots and boxes; choose another");
   return text;
 }
 
 RobotOptions SceneLoader::robot_options(const Yaml& y, const std::string& name) const {
   RobotOptions o;
   o.robot = name;
-  if (y.has("file") && y.has("urdf")) y.fail("has file and urdf", "one of them");
+  if (y.has("file") && y.has("urdf")) y.fail("has file and urdf", "one of them; they mean the same");
   const Yaml path = y.at(y.has("file") ? "file" : "urdf");
   std::filesystem::path file = path.text("path of a robot's file");
   if (file.is_relative()) file = std::filesystem::path(path_).parent_path() / file;
   o.file = file.lexically_normal().string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) path.fail("the file " + in_quotes(o.file) + " cannot be read", "path of a robot's file, relative to the scene file");
+  if (!std::filesystem::is_regular_file(file, error)) path.fail("the file " + in_quotes(o.file) + " cannot be read", "path of a robot's file; relative ones start at the folder of the scene");
   o.strict = strict_;
   o.base_given = y.has("base");
   if (o.base_given) o.base = base_of(y.at("base"));
@@ -111,12 +115,12 @@ void SceneLoader::set_joints(const Robot& robot, const Yaml& joints) {
     if (it == robot.joints.end()) {
       std::vector<std::string_view> names;
       for (const auto& [own, body] : robot.joints) names.push_back(own);
-      value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", did_you_mean(joint, names) + "a joint of its file that is not fixed");
+      value.fail("robot " + in_quotes(robot.name) + " has no moving joint of this name", did_you_mean(joint, names) + "a joint of its file that is not fixed; `delassus describe` lists them");
     }
     for (const Robot::Mimic& m : robot.mimics)
-      if (m.body == it->second) value.fail("the joint follows another one", "no value for a mimic joint");
+      if (m.body == it->second) value.fail("the joint follows another one", "no value for a mimic joint; give it to the joint that is followed");
     const Index k = scene_.model.first_q[z(it->second)], n = q_size(scene_.model.bodies[z(it->second)].joint.type);
-    const std::string accepted = std::to_string(n) + " numbers [rad or m; quaternions w x y z]";
+    const std::string accepted = std::to_string(n) + " numbers [rad or m]; quaternions are w x y z";
     std::vector<double> v = value.is_list() ? value.numbers(" [rad or m]") : std::vector<double>{value.number(" [rad or m]")};
     if (static_cast<Index>(v.size()) != n) value.fail("has " + std::to_string(v.size()) + " entries", accepted);
     for (Index i = 0; i < n; ++i) scene_.q[k + i] = v[z(i)];
@@ -137,7 +141,7 @@ void SceneLoader::set_mimics(const Robot& robot) {
     std::size_t steps = 0;
     for (auto it = by_body.find(master); it != by_body.end(); it = by_body.find(master)) {
       if (++steps > robot.mimics.size())
-        throw ModelError(path_, "robot " + in_quotes(robot.name), "mimic joints follow each other in a circle", "a chain of mimics that ends");
+        throw ModelError(robot.file, "joint " + in_quotes(scene_.model.bodies[z(m.body)].joint.name) + " <mimic>", "mimic joints follow each other in a circle", "a chain of mimics that ends; take one <mimic> out");
       offset += factor * it->second->offset, factor *= it->second->multiplier, master = it->second->master;
     }
     scene_.q[scene_.model.first_q[z(m.body)]] = factor * scene_.q[scene_.model.first_q[z(master)]] + offset;
@@ -195,9 +199,9 @@ void SceneLoader::read_box(const Yaml& y) {
   const std::string name = new_name(y.at("name"));
   const double mass = y.at("mass").positive(" [kg]");
   const Vector3<double> size = y.at("size").vector3(" > 0 [m]");
-  if (!(size.minCoeff() > 0)) y.at("size").fail("an edge is not positive", "3 full edge lengths > 0 [m]");
+  if (!(size.minCoeff() > 0)) y.at("size").fail("an edge of (" + numbers_text(size) + ") is not positive", "3 full edge lengths > 0 [m]; a thin plate still has a thickness");
   Body body = box_body(mass, size);
-  if (!body.inertia.allFinite()) y.at("size").fail("gives moments of inertia beyond the range of double with the mass", "mass and size with m l^2 below 1e308 kg m^2");
+  if (!body.inertia.allFinite()) y.at("size").fail("gives moments of inertia beyond the range of double with the mass", "mass and size with m l^2 below 1e308 kg m^2; check their units");
   body.name = name;
   body.joint.name = name + "/base";
   if (y.has("friction")) body.shapes[0].friction = y.at("friction").non_negative("");

@@ -1,6 +1,8 @@
 // Joints of a URDF. What a fixed joint does not use is neither read nor judged.
-#include <set>
+#include <algorithm>
+#include <array>
 
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/urdf_check.h"
 
@@ -79,7 +81,7 @@ void read_dynamics(const Place& place, XMLElement& joint, CheckedUrdf::JointRow&
               {"armature", " >= 0 [kg m^2 or kg]", row.armature}};
   for (auto& r : rows) {
     r.value = number_or(place, *e, r.name, r.unit, 0);
-    if (r.value < 0) place.fail(*e, std::string(r.name) + " = " + number_text(r.value) + " is negative", "a number" + std::string(r.unit));
+    if (r.value < 0) place.fail(*e, std::string(r.name) + " = " + number_text(r.value) + " is negative", "a number" + std::string(r.unit) + "; correct the sign, or leave it out for 0");
   }
   if (e->Attribute("damping") == nullptr) e->SetAttribute("damping", "0");
 }
@@ -90,7 +92,7 @@ void read_axis(const Place& place, XMLElement& joint, CheckedUrdf::JointRow& row
   if (row.type == "floating") return joint.DeleteChild(e);
   row.axis = triple(place, *e, "xyz", "");
   if (row.axis.cwiseAbs().maxCoeff() == 0)
-    place.fail(*e, "axis " + in_quotes(e->Attribute("xyz")) + " has no direction", "three numbers, not all 0");
+    place.fail(*e, "axis " + in_quotes(e->Attribute("xyz")) + " has no direction", "three numbers, not all 0; leave <axis> out for 1 0 0, or make the joint fixed");
 }
 
 void read_mimic(const Place& place, XMLElement& joint, CheckedUrdf::JointRow& row) {
@@ -116,13 +118,13 @@ CheckedUrdf::JointRow joint_row(const std::string& file, XMLElement& e, Findings
   row.name = name_of(Place{file, ""}, e);
   const Place place{file, "joint " + in_quotes(row.name)};
   row.place = place.element(e);
-  const std::set<std::string> types{"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
+  constexpr std::array<std::string_view, 6> types{"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
   row.type = name_of(place, e, "type");
-  if (!types.count(row.type))
-    place.fail(e, "type " + in_quotes(row.type) + " is unknown", "revolute, continuous, prismatic, fixed, floating, planar; others by joint_types of the scene");
+  if (std::find(types.begin(), types.end(), row.type) == types.end())
+    place.fail(e, "type " + in_quotes(row.type) + " is unknown", did_you_mean(row.type, types) + "revolute, continuous, prismatic, fixed, floating, planar; ball, universal and cylindrical joints by joint_types of the scene");
   for (const char* end : {"parent", "child"}) {
     const XMLElement* x = e.FirstChildElement(end);
-    if (x == nullptr) place.fail(e, "<" + std::string(end) + "> is missing", "<" + std::string(end) + " link=\"...\"/>");
+    if (x == nullptr) place.fail(e, "<" + std::string(end) + "> is missing", "<" + std::string(end) + " link=\"...\"/>; a joint joins two links");
     (end[0] == 'p' ? row.parent : row.child) = name_of(place, *x, "link");
   }
   row.origin = origin(place, e);

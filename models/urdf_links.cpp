@@ -18,10 +18,10 @@ void read_inertial(const Place& place, XMLElement& link, CheckedUrdf::Link& out)
   out.inertial.origin = origin(place, *e);
   XMLElement* m = e->FirstChildElement("mass");
   XMLElement* I = e->FirstChildElement("inertia");
-  if (m == nullptr) place.fail(*e, "<mass> is missing", "<mass value=\"...\"/> [kg]");
-  if (I == nullptr) place.fail(*e, "<inertia> is missing", "<inertia ixx ixy ixz iyy iyz izz/> [kg m^2]");
+  if (m == nullptr) place.fail(*e, "<mass> is missing", "<mass value=\"...\"/> [kg]; take <inertial> out for a massless link");
+  if (I == nullptr) place.fail(*e, "<inertia> is missing", "<inertia ixx ixy ixz iyy iyz izz/> [kg m^2]; all six 0 for a point mass");
   out.inertial.mass = number(place, *m, "value", " [kg]");
-  if (out.inertial.mass < 0) place.fail(*m, "mass = " + number_text(out.inertial.mass) + " kg is negative", "mass >= 0 [kg]");
+  if (out.inertial.mass < 0) place.fail(*m, "mass = " + number_text(out.inertial.mass) + " kg is negative", "mass >= 0 [kg]; correct the sign");
   std::array<double, 6> v{};
   constexpr std::array<const char*, 6> names{"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
   for (std::size_t i = 0; i < 6; ++i) v[i] = number(place, *I, names[i], " [kg m^2]");
@@ -31,7 +31,7 @@ void read_inertial(const Place& place, XMLElement& link, CheckedUrdf::Link& out)
 /// A length that is not negative.
 double length(const Place& place, XMLElement& e, const char* attribute) {
   const double value = number(place, e, attribute, " >= 0 [m]");
-  if (value < 0) place.fail(e, std::string(attribute) + " = " + number_text(value) + " m is negative", "a length >= 0 [m]");
+  if (value < 0) place.fail(e, std::string(attribute) + " = " + number_text(value) + " m is negative", "a length >= 0 [m]; correct the sign");
   return value;
 }
 
@@ -42,7 +42,7 @@ std::vector<Shape> primitive(const Place& place, XMLElement& g, Shape shape, Fin
   if (kind == "box") {
     shape.kind = Shape::Kind::box;
     shape.size = triple(place, g, "size", " [m]") / 2;
-    if (shape.size.minCoeff() < 0) place.fail(g, "size = " + in_quotes(g.Attribute("size")) + " m has a negative edge", "lengths >= 0 [m]");
+    if (shape.size.minCoeff() < 0) place.fail(g, "size = " + in_quotes(g.Attribute("size")) + " m has a negative edge", "lengths >= 0 [m]; correct the sign");
     if (shape.size.maxCoeff() == 0) {
       tally.add("a box of size 0 0 0 touches nothing and is left out", place.element(g));
       return {};
@@ -108,7 +108,7 @@ void check_link(const std::string& file, XMLElement& e, CheckedUrdf& out, Findin
   link.line = e.GetLineNum();
   read_inertial(place, e, link);
   link.shapes = shapes_of(place, e, findings, tally, meshes, link.meshes);
-  if (!out.links.emplace(name, std::move(link)).second) place.fail(e, "the name is taken", "unique link names");
+  if (!out.links.emplace(name, std::move(link)).second) place.fail(e, "the name is taken", "unique link names; rename one of the two");
 }
 
 }  // namespace delassus

@@ -26,7 +26,7 @@ std::vector<double> numbers(const Place& place, XMLElement& e, const char* attri
                             const std::string& unit) {
   const std::string accepted = std::to_string(count) + (count == 1 ? " finite number" : " finite numbers") + unit;
   const char* found = e.Attribute(attribute);
-  if (found == nullptr) place.fail(e, "attribute " + std::string(attribute) + " is missing", accepted);
+  if (found == nullptr) place.fail(e, "attribute " + std::string(attribute) + " is missing", accepted + "; add " + attribute + "=\"...\"");
   const std::string text = found;
   std::vector<double> out;
   std::string_view rest(text);
@@ -36,15 +36,16 @@ std::vector<double> numbers(const Place& place, XMLElement& e, const char* attri
     rest.remove_prefix(first);
     const std::size_t length = std::min(rest.find_first_of(" \t\r\n"), rest.size());
     const auto value = finite_number(rest.substr(0, length));
-    const bool xacro = text.find("${") != std::string::npos || text.find("$(") != std::string::npos;
-    if (!value)
-      place.fail(e, std::string(attribute) + " = " + in_quotes(text) + (xacro ? " is not expanded" : " is not finite"),
-                 accepted + (xacro ? "; run xacro first" : ""));
+    if (!value) {
+      const std::string_view word = rest.substr(0, length);
+      const NotANumber why = not_a_number(text.find('$') == std::string::npos ? word : std::string_view(text));
+      place.fail(e, std::string(attribute) + " = " + in_quotes(text) + (word == text ? " " : ": " + in_quotes(word) + " ") + why.problem, accepted + "; " + why.advice);
+    }
     out.push_back(*value);
     if (out.size() > count) break;
     rest.remove_prefix(length);
   }
-  if (out.size() != count) place.fail(e, std::string(attribute) + " = " + in_quotes(text) + " has the wrong length", accepted);
+  if (out.size() != count) place.fail(e, std::string(attribute) + " = " + in_quotes(text) + " has the wrong length", accepted + "; write " + std::to_string(count));
   e.SetAttribute(attribute, numbers_text(out).c_str());
   return out;
 }
@@ -67,7 +68,7 @@ Pose<double> origin(const Place& place, XMLElement& parent) {
   XMLElement* e = parent.FirstChildElement("origin");
   if (e == nullptr) return pose;
   if (e->Attribute("quat_xyzw") != nullptr)
-    place.fail(*e, "quat_xyzw = " + in_quotes(e->Attribute("quat_xyzw")) + " is of a later URDF and is not read", "rpy=\"...\" [rad]");
+    place.fail(*e, "quat_xyzw = " + in_quotes(e->Attribute("quat_xyzw")) + " is of a later URDF and is not read", "rpy=\"...\" [rad]; convert the quaternion");
   if (e->Attribute("xyz") != nullptr) pose.translation = triple(place, *e, "xyz", " [m]");
   if (e->Attribute("rpy") != nullptr) pose.rotation = rotation_rpy(triple(place, *e, "rpy", " [rad]"));
   return pose;
@@ -76,7 +77,7 @@ Pose<double> origin(const Place& place, XMLElement& parent) {
 std::string name_of(const Place& place, const XMLElement& e, const char* attribute) {
   const char* text = e.Attribute(attribute);
   if (text == nullptr || *text == '\0')
-    place.fail(e, "attribute " + std::string(attribute) + " is missing or empty", "a name");
+    place.fail(e, "attribute " + std::string(attribute) + " is missing or empty", "a name; write " + std::string(attribute) + "=\"...\"");
   return text;
 }
 
@@ -88,7 +89,7 @@ void check_no_nul(const std::string& file) {
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   const std::size_t at = bytes.find('\0');
   if (at != std::string::npos)
-    throw ModelError(file, "byte " + std::to_string(at), "is NUL, which no XML has: what follows would be lost", "text; a UTF-16 file must be converted to UTF-8");
+    throw ModelError(file, "byte " + std::to_string(at), "is NUL, which no XML has: what follows would be lost", "text; convert a UTF-16 file to UTF-8");
 }
 
 }  // namespace
@@ -98,12 +99,12 @@ XMLElement& load_xml(tinyxml2::XMLDocument& document, const std::string& file) {
   const tinyxml2::XMLError error = document.LoadFile(file.c_str());
   if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
       error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
-    throw ModelError(file, "file", "cannot be read", "a robot's file");
+    throw ModelError(file, "file", "cannot be read", "a robot's file; check the path");
   if (error != tinyxml2::XML_SUCCESS)
     throw ModelError(file, "line " + std::to_string(document.ErrorLineNum()), "broken XML: " + std::string(document.ErrorName()),
-                     "well-formed XML");
+                     "well-formed XML; close or quote what stands there, xmllint says more");
   XMLElement* root = document.RootElement();
-  if (root == nullptr) throw ModelError(file, "root element", "the XML holds no element", "<robot name=\"...\">, as in URDF");
+  if (root == nullptr) throw ModelError(file, "root element", "the XML holds no element", "<robot>, <mujoco> or <sdf>; check that the file is not a fragment");
   if (const XMLElement* second = root->NextSiblingElement())
     throw ModelError(file, "<" + std::string(second->Name()) + "> (line " + std::to_string(second->GetLineNum()) + ")",
                      "is a second root element behind <" + std::string(root->Name()) + ">", "one root element; remove the other or put it into a file of its own");

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <set>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 #include "models/message.h"
 #include "models/robot.h"
 
@@ -12,23 +12,25 @@ namespace delassus {
 
 Yaml Yaml::open(const std::string& file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw ModelError(file, "file", "cannot be read", "a scene file (.yaml)");
+  if (!std::filesystem::is_regular_file(file, error)) throw ModelError(file, "file", "cannot be read", "a scene file (.yaml); check the path");
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(file);
     if (documents.size() > 1)
-      throw ModelError(file + ":" + std::to_string(std::max(documents[1].Mark().line, 0) + 1), "YAML", "a second document, after ---", "one document per file");
+      throw ModelError(file + ":" + std::to_string(std::max(documents[1].Mark().line, 0) + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
     const Yaml root(file, "", documents.empty() ? YAML::Node() : documents[0], 1);
-    if (!root.is_map()) root.fail("the file holds no mapping", "keys of a scene: robots, boxes, ...");
+    if (!root.is_map()) root.fail("the file holds no mapping", "keys of a scene: robots, boxes, ...; docs/scenes.md has them all");
     return root;
   } catch (const YAML::BadFile&) {
-    throw ModelError(file, "file", "cannot be read", "a scene file (.yaml)");
+    throw ModelError(file, "file", "cannot be read", "a scene file (.yaml); check the path");
   } catch (const YAML::Exception& e) {
-    throw ModelError(file + ":" + std::to_string(e.mark.line + 1), "YAML", "broken: " + e.msg.substr(0, 200), "well-formed YAML");
+    throw ModelError(file + ":" + std::to_string(e.mark.line + 1), "YAML", "broken: " + e.msg.substr(0, 200),
+                     "well-formed YAML; check brackets and indentation in this line and the one before");
   }
 }
 
 void Yaml::fail(const std::string& problem, const std::string& accepted) const {
-  throw ModelError(file_and_line(), key(), problem, accepted);
+  const bool advised = accepted.find("; ") != std::string::npos;
+  throw ModelError(file_and_line(), key(), problem, accepted + (advised ? "" : "; docs/scenes.md has every key with its unit"));
 }
 
 Yaml Yaml::child(const std::string& key, const YAML::Node& node) const {
@@ -47,7 +49,7 @@ std::vector<std::pair<std::string, Yaml>> Yaml::entries() const {
     std::string shown = in_quotes(name);
     if (shown.size() == name.size() + 2) shown = name;
     Yaml value = child(shown, pair.second);
-    if (!seen.insert(name).second) value.fail("the key appears twice", "each key once");
+    if (!seen.insert(name).second) value.fail("the key appears twice", "each key once; take one of them out");
     out.emplace_back(name, std::move(value));
   }
   return out;
@@ -67,7 +69,7 @@ void Yaml::keys(std::initializer_list<const char*> accepted) const {
 bool Yaml::has(const char* key) const { return node_.IsMap() && node_[key].IsDefined(); }
 
 Yaml Yaml::at(const char* key) const {
-  if (!has(key)) fail("key " + std::string(key) + " is missing", std::string(key) + ": ...");
+  if (!has(key)) fail("key " + std::string(key) + " is missing", std::string(key) + ": ...; give it a value");
   return child(key, node_[key]);
 }
 
@@ -86,32 +88,33 @@ double Yaml::number(const std::string& unit) const {
   const std::string accepted = "a finite number" + unit;
   if (!node_.IsScalar()) fail("is no number", accepted);
   const auto value = finite_number(node_.Scalar());
-  if (!value) fail(in_quotes(node_.Scalar()) + " is no finite number", accepted);
-  return *value;
+  if (value) return *value;
+  const NotANumber why = not_a_number(node_.Scalar());
+  fail(in_quotes(node_.Scalar()) + " " + why.problem, accepted + "; " + why.advice);
 }
 
 double Yaml::non_negative(const std::string& unit) const {
   const double x = number(" >= 0" + unit);
-  if (x < 0) fail(in_quotes(node_.Scalar()) + " is negative", "a number >= 0" + unit);
+  if (x < 0) fail(in_quotes(node_.Scalar()) + " is negative", "a number >= 0" + unit + "; 0 for none");
   return x;
 }
 
 double Yaml::positive(const std::string& unit) const {
   const double x = number(" > 0" + unit);
-  if (!(x > 0)) fail(in_quotes(node_.Scalar()) + " is not positive", "a number > 0" + unit);
+  if (!(x > 0)) fail(in_quotes(node_.Scalar()) + " is not positive", "a number > 0" + unit + "; check sign and unit");
   return x;
 }
 
 Index Yaml::index() const {
   const double x = number(" (whole, >= 0)");
-  if (x < 0 || x != std::floor(x) || x > 1e15) fail(in_quotes(node_.Scalar()) + " is no index", "a whole number >= 0");
+  if (x < 0 || x != std::floor(x) || x > 1e15) fail(in_quotes(node_.Scalar()) + " is no index", "a whole number >= 0; count from 0");
   return static_cast<Index>(x);
 }
 
 bool Yaml::boolean() const {
   if (node_.IsScalar() && node_.Scalar() == "true") return true;
   if (node_.IsScalar() && node_.Scalar() == "false") return false;
-  fail("is neither true nor false", "true, false");
+  fail((node_.IsScalar() ? in_quotes(node_.Scalar()) : "a list or mapping") + " is neither true nor false", "true, false; without quotes");
 }
 
 std::string Yaml::text(const std::string& accepted) const {
@@ -127,13 +130,13 @@ std::vector<double> Yaml::numbers(const std::string& unit) const {
 
 Vector3<double> Yaml::vector3(const std::string& unit) const {
   const std::vector<double> v = numbers(unit);
-  if (v.size() != 3) fail("has " + std::to_string(v.size()) + " entries", "3 numbers" + unit);
+  if (v.size() != 3) fail("has " + std::to_string(v.size()) + " entries", "3 numbers" + unit + "; x, y and z");
   return {v[0], v[1], v[2]};
 }
 
 Vector3<double> Yaml::direction() const {
   const Vector3<double> v = vector3("");
-  if (v.stableNorm() == 0) fail("has no direction", "3 numbers, not all 0");
+  if (v.stableNorm() == 0) fail("(" + numbers_text(v) + ") has no direction", "3 numbers, not all 0; any length will do");
   return v.stableNormalized();
 }
 

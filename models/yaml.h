@@ -19,6 +19,7 @@ class Yaml {
   /// A mapping made by the program in place of a file.
   static Yaml of(const std::string& file, const YAML::Node& mapping) { return {file, "", mapping, 1}; }
 
+  /// @throws ModelError; `accepted` may end with what to do, after a semicolon: else the page with all keys is named.
   [[noreturn]] void fail(const std::string& problem, const std::string& accepted) const;
   /// Where the node stands, as messages say it: `file:line` and `robots[0].joints.j`.
   [[nodiscard]] std::string file_and_line() const { return file_ + ":" + std::to_string(line_); }

@@ -87,7 +87,7 @@ TEST(model, refuses_trees_and_names_that_cannot_be) {
   m.add(good_body("r/base"));
   m.add(child);
   EXPECT_EQ(m.find("r/child"), 1);
-  expect_refusal([&] { (void)m.find("r/hand"); }, "r/hand: no body has this name (accepted: r/base, r/child)");
+  expect_refusal([&] { (void)m.find("r/hand"); }, "r/hand: no body has this name (accepted: r/base, r/child; names are robot/link)");
   EXPECT_NO_THROW(validate(m, "f"));
   Model bad = m;
   bad.bodies[1].parent = 1;
