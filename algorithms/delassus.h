@@ -21,6 +21,9 @@
 
 namespace delassus {
 
+/// The instruction set this library's kernels were compiled for: "AVX-512", "AVX2 and FMA" or "baseline".
+[[nodiscard]] std::string_view kernels();
+
 /// Columns of m numbers with unit inner stride.
 template <class T> using ConstRef = const Eigen::Ref<const MatrixX<T>, 0, Eigen::OuterStride<>>&;
 template <class T> using Ref = Eigen::Ref<MatrixX<T>, 0, Eigen::OuterStride<>>;

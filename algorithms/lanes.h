@@ -1,8 +1,8 @@
 // Eight numbers side by side: the width of every kernel, whatever the instruction set.
 //
 //   Lanes4  four doubles, one vector of the compiler
-//   Lanes8  eight doubles: one vector where the machine has vectors of eight, else two Lanes4 (g++ takes a vector wider
-//           than the machine's apart, through memory)
+//   Lanes8  eight doubles: one vector of the compiler, or with AVX2 two Lanes4 (of which g++ 12 keeps both in registers; a
+//           vector of eight it takes apart through memory there; without AVX2 it is the other way round)
 //
 // Sums over lanes are taken in one order, halves first, so that the width of the machine does not change a bit of them.
 #pragma once
@@ -30,7 +30,7 @@ using Lanes8f = float __attribute__((vector_size(32)));
 #endif
 }
 
-#ifdef __AVX512F__
+#if defined __AVX512F__ || !defined __AVX2__
 
 using Lanes8 = double __attribute__((vector_size(64)));
 [[nodiscard, gnu::always_inline]] inline Lanes8 joined(const Lanes4& lower, const Lanes4& upper) {
@@ -39,13 +39,24 @@ using Lanes8 = double __attribute__((vector_size(64)));
 [[nodiscard, gnu::always_inline]] inline Lanes4 lower(const Lanes8& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); }
 [[nodiscard, gnu::always_inline]] inline Lanes4 upper(const Lanes8& x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); }
 [[nodiscard, gnu::always_inline]] inline Lanes8 fused(const Lanes8& a, const Lanes8& b, const Lanes8& c) {
+#ifdef __AVX512F__
   return _mm512_fmadd_pd(a, b, c);
+#else
+  return joined(fused(lower(a), lower(b), lower(c)), fused(upper(a), upper(b), upper(c)));
+#endif
 }
 /// The first six of x, then zeros.
-[[nodiscard, gnu::always_inline]] inline Lanes8 load_six(const double* x) { return _mm512_maskz_loadu_pd(0x3f, x); }
+[[nodiscard, gnu::always_inline]] inline Lanes8 load_six(const double* x) {
+#ifdef __AVX512F__
+  return _mm512_maskz_loadu_pd(0x3f, x);
+#else
+  return Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
+#endif
+}
+using UnalignedLanes8 = double __attribute__((vector_size(64), aligned(8)));
 /// Eight numbers at any address.
-[[nodiscard, gnu::always_inline]] inline Lanes8 load_lanes(const double* x) { return _mm512_loadu_pd(x); }
-[[gnu::always_inline]] inline void store_lanes(double* x, const Lanes8& y) { _mm512_storeu_pd(x, y); }
+[[nodiscard, gnu::always_inline]] inline Lanes8 load_lanes(const double* x) { return *reinterpret_cast<const UnalignedLanes8*>(x); }
+[[gnu::always_inline]] inline void store_lanes(double* x, const Lanes8& y) { *reinterpret_cast<UnalignedLanes8*>(x) = y; }
 
 #else
 

@@ -72,6 +72,8 @@ Mechanism<T>::Mechanism(const Model& model, std::shared_ptr<const Structure> str
   compile_bodies(model);
   joint_K_.assign(static_cast<std::size_t>(s.joint_K_size), T(0));
   std::size_t link = 0, joint = 0;
+  pairs_.reserve(static_cast<std::size_t>(std::count_if(model.constraints.begin(), model.constraints.end(),
+                                                        [](const Constraint& c) { return has_closure(c.kind); })));
   for (const Constraint& c : model.constraints) {
     if (acts_on_joint(c.kind)) joint_rows(s, c, s.joint_constraints[joint++], joint_K_);
     else compile_constraint(model, c, s.link_constraints[link], link), ++link;

@@ -8,6 +8,16 @@
 
 namespace delassus {
 
+std::string_view kernels() {
+#if defined __AVX512F__
+  return "AVX-512";
+#elif defined __AVX2__ && defined __FMA__
+  return "AVX2 and FMA";
+#else
+  return "baseline";
+#endif
+}
+
 // What sweeps load at a time: eight scalars, but no more than 64 bytes.
 template <class T> inline constexpr std::size_t alignment =
     std::is_trivially_copyable_v<T> && 64 % sizeof(T) == 0 ? std::min<std::size_t>(64, 8 * sizeof(T)) : alignof(T);
