@@ -68,6 +68,20 @@ template <class T> Report Operator<T>::update_damping(const Damping<T>& damping)
   return damping_.ok() ? updated : damping_;
 }
 
+namespace {
+// Whether columns of `rows` numbers, `a_stride` and `b_stride` apart, share one; rows of one matrix above each other do not.
+template <class T> bool overlap(const T* a, Index a_stride, const T* b, Index b_stride, Index rows, Index columns) {
+  const std::less_equal<const T*> before;
+  for (Index i = 0, j = 0; i < columns && j < columns && rows > 0;) {
+    const T *const x = a + i * a_stride, *const y = b + j * b_stride;
+    if (before(x + rows, y)) ++i;
+    else if (before(y + rows, x)) ++j;
+    else return true;
+  }
+  return false;
+}
+}  // namespace
+
 template <class T>
 void Operator<T>::check(ConstRef<T> in, Ref<T> out, const Workspace<T>& w) const {
   const Index rows = in.rows(), columns = in.cols();
@@ -75,10 +89,7 @@ void Operator<T>::check(ConstRef<T> in, Ref<T> out, const Workspace<T>& w) const
   require(rows == size() && out.rows() == size(), "Operator: vectors must have as many rows as the operator");
   require(columns == out.cols(), "Operator: input and output must have the same number of columns");
   require(w.size() >= workspace(columns), "Operator: workspace too small (see Operator::workspace)");
-  if (rows * columns == 0) return;
-  const T *const in_end = in.data() + (columns - 1) * in.outerStride() + rows, *const out_end = out.data() + (columns - 1) * out.outerStride() + rows;
-  const std::less_equal<const T*> before;
-  require(before(in_end, out.data()) || before(out_end, in.data()), "Operator: input and output must not overlap");
+  require(!overlap(in.data(), in.outerStride(), out.data(), out.outerStride(), rows, columns), "Operator: input and output must not overlap");
 }
 
 namespace {
@@ -105,7 +116,11 @@ template <class T> void poison(Ref<T> x) {
 
 // NaN or infinity, given or met on the way, is a status and never a number. An iterate that did not converge is kept.
 template <class T> Report finished(Report report, ConstRef<T> in, Ref<T> out) {
-  if (!all_finite<T>(in) || (report.ok() && !all_finite<T>(out))) report.status = Status::not_finite;
+  if (!all_finite<T>(in) || (report.ok() && !all_finite<T>(out))) {
+    report.status = Status::not_finite;
+    report.where = -1;
+    report.of_A = false;
+  }
   if (!report.ok() && report.status != Status::not_converged) poison<T>(out);
   return report;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/delassus.h"
 #include "bench/results.h"
 #include "models/scene.h"
 
@@ -15,7 +16,8 @@ struct ReportOptions {
   std::vector<std::string> scenes;   ///< names; empty: every scene that comes with the library
   bool quick = false;                ///< shorter timings, ladder to 1000 links, checks on scenes of up to 120 rows
   bool check = true;                 ///< hold the laws
-  bool ladder = true;                ///< climb the swimmers
+  bool ladder = true;                ///< climb the swimmers; with `ops` never
+  std::vector<const OperatorRow*> ops;  ///< these operators; empty: all
   SceneOptions opening;              ///< how `scenes` are opened; their warnings become notes of the page
 };
 
@@ -26,6 +28,9 @@ using Progress = std::function<void(const std::string&)>;
 
 /// Writes DIR/index.html and DIR/results.json. @throws ModelError when DIR cannot be written.
 void write_report(const Results& results, const std::filesystem::path& directory);
+
+/// 0, or 1 when a law that was checked is broken.
+[[nodiscard]] int exit_code(const Results& results);
 
 /// Scenes × operators as plain text: rows, worst ratio, update, apply and solve times.
 [[nodiscard]] std::string text_table(const Results& results);

@@ -19,13 +19,13 @@ LawResult outcome(const laws::LawRow& law, const OperatorRow& op, const laws::Ca
   return r;
 }
 
-void verify_one(const Scene& scene, double time_limit, SceneResult& result) {
+void verify_one(const Scene& scene, const std::vector<const OperatorRow*>& ops, double time_limit, SceneResult& result) {
   const auto start = std::chrono::steady_clock::now();
   const laws::Case c = laws::make_case(problem_of(scene), scene.damping, scene.name, 1);
-  for (std::size_t i = 0; i < operators().size(); ++i)
+  for (std::size_t i = 0; i < ops.size(); ++i)
     for (const laws::LawRow& law : laws::laws()) {
       if (seconds_since(start) < time_limit)
-        result.cells[i].laws.push_back(outcome(law, operators()[i], c));
+        result.cells[i].laws.push_back(outcome(law, *ops[i], c));
       else
         result.cells[i].laws.push_back({std::string(law.name), 0, true,
                                         format("time limit of %.0f s per scene reached", time_limit), ""});
@@ -34,8 +34,8 @@ void verify_one(const Scene& scene, double time_limit, SceneResult& result) {
 
 }  // namespace
 
-void verify(const std::vector<Scene>& scenes, double time_limit, std::vector<SceneResult>& results,
-            const std::function<void(const SceneResult&)>& done) {
+void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, double time_limit,
+            std::vector<SceneResult>& results, const std::function<void(const SceneResult&)>& done) {
   std::vector<std::size_t> order(scenes.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -45,7 +45,7 @@ void verify(const std::vector<Scene>& scenes, double time_limit, std::vector<Sce
   const auto work = [&] {
     for (std::size_t k; (k = next++) < order.size();) {
       const std::size_t i = order[k];
-      verify_one(scenes[i], time_limit, results[i]);
+      verify_one(scenes[i], ops, time_limit, results[i]);
       const std::lock_guard lock(speaking);
       done(results[i]);
     }

@@ -10,15 +10,21 @@ namespace delassus::cli {
 
 namespace {
 
-int report(const bench::ReportOptions& options, const std::string& directory) {
+struct Options {
+  std::string directory, defect;
+  std::vector<std::string> ops;
+};
+
+int report(bench::ReportOptions options, const Options& o) {
+  if (!o.ops.empty() || !o.defect.empty()) options.ops = chosen_operators(o.ops, o.defect);
   bench::Results results = bench::run_report(options, [](const std::string& line) {
     std::printf("%s\n", line.c_str());
     std::fflush(stdout);
   });
-  bench::write_report(results, directory);
+  bench::write_report(results, o.directory);
   std::printf("\n%s\n%d law checks, %d failed; %.0f s\n%s\n", bench::text_table(results).c_str(), results.checked(),
-              results.failed(), results.seconds, (std::filesystem::path(directory) / "index.html").c_str());
-  return results.failed() ? 1 : 0;
+              results.failed(), results.seconds, (std::filesystem::path(o.directory) / "index.html").c_str());
+  return bench::exit_code(results);
 }
 
 }  // namespace
@@ -26,15 +32,17 @@ int report(const bench::ReportOptions& options, const std::string& directory) {
 void add_report(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("report", "check and time every operator on every scene; write a page and the numbers");
   auto options = std::make_shared<bench::ReportOptions>();
-  auto directory = std::make_shared<std::string>();
-  c->add_option("--out", *directory, "directory for index.html and results.json")->required();
+  auto o = std::make_shared<Options>();
+  c->add_option("--out", o->directory, "directory for index.html and results.json")->required();
   c->add_option("--scene", options->scenes, "only these scenes (repeat, or several names)");
+  c->add_option("--op", o->ops, "only these operators, without swimmers of growing length (repeat, or several names)");
+  c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`), likewise");
   c->add_flag("--quick", options->quick, "shorter timings, swimmers to 1000 links, large scenes timed but not checked");
   c->add_flag("!--no-check", options->check, "time only");
   c->add_flag("!--no-ladder", options->ladder, "leave out the swimmers of growing length");
   add_scene_options(*c, options->opening);
   c->footer("Exit code 1 when a law is broken.");
-  c->callback([=, &run] { run = [=] { return report(*options, *directory); }; });
+  c->callback([=, &run] { run = [=] { return report(*options, *o); }; });
 }
 
 }  // namespace delassus::cli

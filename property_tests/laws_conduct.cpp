@@ -68,8 +68,8 @@ template <Function F> Verdict damping_update(const OperatorRow& op, const Case& 
 
 template <Function F> Verdict poisoned_workspace(const OperatorRow& op, const Case& c) {
   Route<double> route(op, c.problem, c.damping);
-  const MatrixX<double> x = vectors<double>(c.rows(), 3, c.seed);
-  Workspace<double> w(route.get().workspace(3));
+  const MatrixX<double> x = vectors<double>(c.rows(), 5, c.seed);  // more than go one by one
+  Workspace<double> w(route.get().workspace(5));
   w.fill(0);
   const Ran<double> clean = route.run(F, x, w);
   w.fill(nan);
@@ -139,9 +139,9 @@ Verdict no_allocation(const OperatorRow& op, const Case& c) {
   const auto operation = op.make<double>();
   operation->analyze(c.problem.structure);
   const Damping<double> other = other_damping(*c.problem.structure, c.damping);
-  const MatrixX<double> x = vectors<double>(c.rows(), 3, c.seed);
-  MatrixX<double> y(c.rows(), 3);
-  Workspace<double> w(operation->workspace(3));
+  const MatrixX<double> x = vectors<double>(c.rows(), 5, c.seed);
+  MatrixX<double> y(c.rows(), 5);
+  Workspace<double> w(operation->workspace(5));
   const char* phases[] = {"update", "update_damping", "apply", "solve"};
   for (int step = op.grows ? -4 : 0; step < 4; ++step) {  // who grows is asked twice
     const int phase = (step + 4) % 4;

@@ -1,6 +1,7 @@
 // The loop: for every operator, on every family, every law that applies.
 //
 //   property_tests [--op NAME] [--family NAME] [--law NAME] [--seeds K] [--shard i/n] [--table ratios|promises] [--verbose] [--times]
+//                  [--defect NAME]     a wrong operator instead of all: the loop must fail
 //
 // Prints the worst ratio per law and operator and why anything was skipped. Exit code 0: every law holds; 1: not.
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "property_tests/allocations.h"
+#include "property_tests/defects.h"
 #include "property_tests/law_tables.h"
 #include "property_tests/options.h"
 #include "property_tests/summary.h"
@@ -20,7 +22,7 @@ using namespace delassus;
 using namespace delassus::laws;
 
 struct Options {
-  std::string op, family, law, table;
+  std::string op, family, law, table, defect;
   std::uint64_t seeds = 5;
   options::Shard shard;
   bool verbose = false, times = false;
@@ -34,8 +36,12 @@ struct Tables {
 };
 
 void check_case(const Options& o, std::string_view family, const Case& c, Tables& to) {
-  for (const OperatorRow& op : operators())
+  std::vector<const OperatorRow*> all;
+  for (const OperatorRow& op : operators()) all.push_back(&op);
+  if (!o.defect.empty()) all = {&find_defect(o.defect).op};
+  for (const OperatorRow* row : all)
     for (const LawRow& law : laws::laws()) {
+      const OperatorRow& op = *row;
       if ((!o.op.empty() && op.name != o.op) || (!o.law.empty() && law.name != o.law)) continue;
       if (o.table == "promises") {
         to.promises.add(family, op, why_not(law, op, c));
@@ -50,6 +56,7 @@ void check_case(const Options& o, std::string_view family, const Case& c, Tables
 
 int run(const Options& o) {
   if (!o.op.empty()) static_cast<void>(find_operator(o.op));  // these throw, listing the names
+  if (!o.defect.empty()) static_cast<void>(find_defect(o.defect));
   if (!o.family.empty()) static_cast<void>(generators::find_family(o.family));
   if (!o.law.empty()) static_cast<void>(find_law(o.law));
   Tables to;
@@ -81,6 +88,7 @@ int main(int argc, char** argv) {
   options::Command app{"Every law that applies, on every family, for every operator.\nExit code 1 when a law is broken."};
   Options o;
   app.add_option("--op", o.op, "only this operator");
+  app.add_option("--defect", o.defect, "a wrong operator instead of all (see `delassus list defects`)");
   app.add_option("--family", o.family, "only this family");
   app.add_option("--law", o.law, "only this law");
   app.add_option("--seeds", o.seeds, "problems of every family and size")->check(options::whole(1))->capture_default_str();

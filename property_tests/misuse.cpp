@@ -1,6 +1,8 @@
 #include "property_tests/misuse.h"
 
+#include <algorithm>
 #include <functional>
+#include <new>
 #include <stdexcept>
 
 #include "property_tests/verdict.h"
@@ -28,13 +30,26 @@ Problem<double> problem_on(std::shared_ptr<const Structure> s) {
   return p;
 }
 
+#if !defined(__SANITIZE_ADDRESS__)
+/// One constraint whose damping may be a block that no machine holds.
+std::shared_ptr<const Structure> beyond_memory() {
+  Structure s;
+  s.add_body(ground, 1);
+  s.add_link_constraint(30'000'000, {0});
+  return std::make_shared<const Structure>(std::move(s));
+}
+#endif
+
 struct Square {
   Index row, size;
 };
 
 Damping<double> damped(std::initializer_list<Square> squares) {
   Damping<double> d = Damping<double>::uniform(6, 1);
-  for (const Square& b : squares) d.blocks.push_back({b.row, MatrixX<double>::Identity(b.size, b.size)});
+  for (const Square& b : squares) {
+    d.blocks.push_back({b.row, MatrixX<double>::Identity(b.size, b.size)});
+    for (Index row = std::max<Index>(b.row, 0); row < std::min<Index>(b.row + b.size, 6); ++row) d.diagonal[static_cast<std::size_t>(row)] = 0;
+  }
   return d;
 }
 
@@ -86,8 +101,33 @@ std::string wrong_phase(const OperatorRow& row, const Problem<double>& problem) 
   if (!throws([&] { return op->update(shorter, damped({})); })) return "takes a problem that lacks a row";
   static_cast<void>(op->update(problem, damped({})));
   if (throws(use)) return "does not answer";
+#if !defined(__SANITIZE_ADDRESS__)  // which ends the program
+  if (!throws<std::bad_alloc>([&] { op->analyze(beyond_memory()); return Report{}; })) return "finds memory for a block of 10¹⁵ numbers";
+  if (!throws([&] { return op->update(problem, damped({})); }) || !throws(use)) return "is analyzed after an analyze that threw";
+  op->analyze(problem.structure);
+  static_cast<void>(op->update(problem, damped({})));
+  if (throws(use)) return "does not answer after an analyze that threw";
+#endif
   op->analyze(problem.structure);
   if (!throws(use)) return "answers after analyze alone";
+  return {};
+}
+
+/// Input and output in one matrix: any number of both is refused, columns side by side and rows one above the other are not.
+std::string shared_numbers(const OperatorRow& row, Operator<double>& op) {
+  MatrixX<double> all = MatrixX<double>::Ones(13, 4);
+  Workspace<double> w(op.workspace(2));
+  const auto used = [&](Index in_row, Index in_column, Index out_row, Index out_column, Index columns) {
+    const auto in = all.block(in_row, in_column, 6, columns);
+    auto out = all.block(out_row, out_column, 6, columns);
+    const bool applied = row.applies && !throws([&] { return op.apply(in, out, w); });
+    const bool solved = row.solves && !throws([&] { return op.solve(in, out, w); });
+    return applied || solved;
+  };
+  if (!used(0, 0, 6, 0, 2) || !used(7, 0, 1, 0, 2) || !used(0, 0, 0, 2, 2) || !used(0, 2, 0, 0, 2) || !used(0, 0, 6, 1, 2) || !used(6, 1, 0, 0, 2))
+    return "refuses two parts of one matrix";
+  if (used(0, 0, 5, 0, 1) || used(5, 0, 0, 0, 1) || used(0, 0, 3, 0, 2) || used(3, 0, 0, 0, 2) || used(0, 0, 0, 1, 2) || used(0, 1, 0, 0, 2) || used(0, 0, 5, 1, 2))
+    return "writes where it reads";
   return {};
 }
 
@@ -109,6 +149,7 @@ std::string wrong_shape(const OperatorRow& row, Operator<double>& op) {
   Workspace<double> w(enough);
   if (row.applies && !throws([&] { return op.apply(x, x, w); })) return "applies in place";
   if (row.solves && !throws([&] { return op.solve(x, x, w); })) return "solves in place";
+  if (std::string words = shared_numbers(row, op); !words.empty()) return words;
   MatrixX<double> y = x;
   for (const double error : {-1.0, std::numeric_limits<double>::quiet_NaN()})
     if (row.solves && !throws([&] { return op.solve(x, y, Accuracy{error}, w); })) return "wants an error that is no number";

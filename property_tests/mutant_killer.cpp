@@ -29,6 +29,7 @@
 #include "property_tests/refinement_model.h"
 #include "property_tests/reuse.h"
 #include "property_tests/summary.h"
+#include "property_tests/wrong_damping.h"
 
 namespace {
 
@@ -115,6 +116,7 @@ std::vector<Check> checks(std::vector<std::string_view> names) {
     for (std::size_t k = 0; k < cases.size(); ++k)
       rest.push_back([op_name, k] { return laws::trace_of_use(find_operator(op_name), cases[(k + cases.size() - 1) % cases.size()], cases[k]); });
   for (const std::string_view op_name : names) rest.push_back([op_name] { return misuse_accepted(find_operator(op_name)); });
+  for (const std::string_view op_name : names) rest.push_back([op_name] { return wrong_damping_taken(find_operator(op_name)); });
   for (const std::string_view op_name : names)
     for (const bool held : {true, false})
       rest.push_back([op_name, held] { return laws::lost_pivot_forgotten(find_operator(op_name), held); });

@@ -40,7 +40,7 @@ FILES = {
     "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
-    "operator.cpp": "dense_cholesky aba_sweep lcaba_refined",
+    "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "damping.cpp": "lcaba aba_sweep",
     **dict.fromkeys(["weight_root.cpp", "weight_root.h", "mass_root.cpp", "front_plan.cpp", "householder.h", "square_root_factor.cpp",
                      "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr"), "lcaba_qr.cpp": "lcaba_qr"}
 
@@ -62,7 +62,7 @@ def killer_of(name):
 
 
 def folder_of(name):
-    return next((f for f in ("algorithms", "models") if os.path.exists(os.path.join(ROOT, f, name))), "models")
+    return "" if "/" in name else next((f for f in ("algorithms", "models") if os.path.exists(os.path.join(ROOT, f, name))), "models")
 
 
 def read_equivalent(path):

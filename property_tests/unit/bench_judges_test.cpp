@@ -1,0 +1,299 @@
+// The benches themselves: operators that take a known time and do known work, laws known to be broken, growth that is not linear.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "bench/accuracy_digest.h"
+#include "bench/accuracy_truth.h"
+#include "bench/cell.h"
+#include "bench/growth.h"
+#include "bench/page.h"
+#include "bench/report.h"
+#include "generators/build.h"
+#include "generators/families.h"
+
+namespace delassus::bench {
+namespace {
+
+/// Adds as often as told, and takes as long; answers solve with a status.
+constexpr int of_update = 5, of_new_damping = 7, of_apply = 11, of_solve = 13;
+template <class T, Status answer = Status::ok> class Worker final : public Operator<T> {
+  static Report work(int additions) {
+    if constexpr (std::is_same_v<T, double>) {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(20 * additions);
+      while (std::chrono::steady_clock::now() < end) {}
+    }
+    T sum(0);
+    for (int k = 0; k < additions; ++k) sum += T(1);
+    return {};
+  }
+  void do_analyze() override {}
+  Report do_update(const Problem<T>&, const Damping<T>&) override { return work(of_update); }
+  Report do_update_damping(const Damping<T>&) override { return work(of_new_damping); }
+  Report do_apply(ConstRef<T> f, Ref<T> a, T*) const override { return a = f, work(of_apply); }
+  Report do_solve(ConstRef<T> a, Ref<T> f, T*) const override {
+    f = a;
+    return work(of_solve), Report{answer};
+  }
+  [[nodiscard]] Index do_workspace(Index) const override { return 17; }
+  [[nodiscard]] Index do_bytes() const override { return 4000; }
+};
+
+template <template <class> class Op> OperatorRow row_of(bool applies, bool solves) {
+  OperatorRow row = find_operator("dense_cholesky");
+  row.name = "worker";
+  row.applies = applies;
+  row.solves = solves;
+  row.makers = {[] { return std::unique_ptr<Operator<double>>(new Op<double>); }, nullptr, nullptr,
+                [] { return std::unique_ptr<Operator<Counted>>(new Op<Counted>); }, nullptr, nullptr};
+  return row;
+}
+template <class T> using Right = Worker<T>;
+template <class T> using WithoutAnswer = Worker<T, Status::not_converged>;
+
+SceneResult scene(const std::string& name) {
+  SceneResult s;
+  s.name = name;
+  return s;
+}
+
+generators::Built one_body() { return generators::build(generators::find_family("chain").make(1, 1)); }
+
+TEST(Cell, CountsWhatEachPhaseDoes) {
+  const auto built = one_body();
+  const auto count = [&](bool applies, bool solves) { return count_operations(row_of<Right>(applies, solves), built.problem, built.damping); };
+  const Operations both = count(true, true), apply = count(true, false), solve = count(false, true);
+  EXPECT_EQ(both.update, of_update);
+  EXPECT_EQ(both.new_damping, of_new_damping);
+  EXPECT_EQ(both.apply, of_apply);
+  EXPECT_EQ(both.solve, of_solve);
+  EXPECT_EQ(apply.solve, -1);
+  EXPECT_EQ(solve.apply, -1);
+  OperatorRow uncounted = row_of<Right>(true, true);
+  std::get<Maker<Counted>>(uncounted.makers) = nullptr;
+  EXPECT_EQ(count_operations(uncounted, built.problem, built.damping).update, -1);
+}
+
+TEST(Cell, TimesEachPhaseApart) {
+  const auto built = one_body();
+  const Cell cell = measure(row_of<Right>(true, true), built.problem, built.damping, {0.02, 0.1});
+  const auto expect = [](const Timing& t, int additions) {
+    EXPECT_GE(t.lowest, 20 * additions) << "of one call, not of one divided by their number";
+    EXPECT_LT(t.lowest, 20 * (additions + 1.5)) << "or this machine never had 0.3 ms in one piece";
+    EXPECT_GE(t.median, t.lowest);
+  };
+  expect(cell.time.update, of_update);
+  expect(cell.time.new_damping, of_new_damping);
+  expect(cell.time.apply, of_apply);
+  expect(cell.time.solve, of_solve);
+  EXPECT_TRUE(cell.time.analyze.measured());
+  EXPECT_LT(cell.time.analyze.lowest, 20 * of_update);
+  EXPECT_GE(cell.bytes, 4000);
+  EXPECT_EQ(cell.workspace_bytes, 17 * 8);
+  EXPECT_EQ(cell.operations.update, of_update);
+  EXPECT_EQ(cell.solve_status, "ok");
+  const Cell no_apply = measure(row_of<Right>(false, true), built.problem, built.damping, {0.001, 0.1});
+  EXPECT_FALSE(no_apply.time.apply.measured());
+  const Cell slow = measure(row_of<Right>(true, true), built.problem, built.damping, {0.001, 1e-4});
+  EXPECT_EQ(slow.operations.update, -1) << "too slow to be counted";
+}
+
+TEST(Cell, SaysWhereThereIsNoAnswer) {
+  const auto built = one_body();
+  const Cell cell = measure(row_of<WithoutAnswer>(false, true), built.problem, built.damping, {0.001, 0.1});
+  EXPECT_EQ(cell.solve_status, "not_converged");
+  EXPECT_EQ(cell.update_status, "ok");
+  Results r;
+  r.scenes.push_back(scene("scene"));
+  r.scenes[0].cells.push_back(cell);
+  EXPECT_NE(text_table(r).find("not_converged"), std::string::npos);
+}
+
+std::vector<std::int64_t> counted(double order, std::int64_t constant) {
+  std::vector<std::int64_t> f;
+  for (double n = 10; n < 2000; n *= 2) f.push_back(constant + std::llround(40 * std::pow(n, order)));
+  return f;
+}
+
+TEST(Growth, OnlyLinearGrowthPasses) {
+  EXPECT_TRUE(grows_linearly(counted(1, 0)));
+  EXPECT_TRUE(grows_linearly(counted(1, 12345)));
+  EXPECT_TRUE(grows_linearly(counted(1.009, 0)));
+  for (const double order : {0.98, 1.02, 1.1, 1.5, 2.0, 3.0}) {
+    EXPECT_FALSE(grows_linearly(counted(order, 100))) << order;
+    for (const double p : orders(counted(order, 100))) EXPECT_NEAR(p, order, 0.01);
+  }
+  std::vector<std::int64_t> f = counted(1, 7);
+  f.back() += f.back() / 50;
+  EXPECT_FALSE(grows_linearly(f)) << "the last size alone";
+  f = counted(1, 7);
+  f.front() -= 9;
+  EXPECT_FALSE(grows_linearly(f)) << "the first size alone";
+  EXPECT_FALSE(grows_linearly({-1, -1, -1, -1}));
+  EXPECT_FALSE(grows_linearly({0, 0, 0, 0}));
+  EXPECT_FALSE(grows_linearly({5, 5, 5, 5}));
+  EXPECT_FALSE(grows_linearly({10, 20}));
+  EXPECT_TRUE(no_work({0, 0, 0}));
+  EXPECT_FALSE(no_work({0, 0, 1}) || no_work({-1, -1, -1}) || no_work({}));
+}
+
+LawResult law(const char* name, double ratio, bool passed, const char* skipped = "") { return {name, ratio, passed, skipped, ""}; }
+
+/// Two scenes and two operators: three laws hold, two are broken, one of them without a ratio, two were not checked.
+Results some_results() {
+  Results r;
+  for (const char* op : {"first", "second"}) r.operators.emplace_back().name = op;
+  for (const char* name : {"a", "b"}) {
+    r.laws.push_back({name, "identity", "bound"});
+    r.scenes.push_back(scene(std::string("scene_") + name));
+    for (const char* op : {"first", "second"}) {
+      Cell cell;
+      cell.op = op;
+      r.scenes.back().cells.push_back(cell);
+    }
+  }
+  r.scenes[0].cells[0].laws = {law("a", 29.5, true), law("b", 30.5, false)};
+  r.scenes[0].cells[1].laws = {law("a", HUGE_VAL, false), law("b", 2, true)};
+  r.scenes[1].cells[0].laws = {law("a", 1, true), law("b", 0, true, "has no solve")};
+  r.scenes[1].cells[1].laws = {law("a", 0, true, "has no solve")};
+  return r;
+}
+
+TEST(Results, BrokenLawsAreCountedAndShown) {
+  const Results r = some_results();
+  EXPECT_EQ(r.checked(), 5);
+  EXPECT_EQ(r.failed(), 2);
+  EXPECT_EQ(r.unchecked(), 1);
+  EXPECT_EQ(exit_code(r), 1);
+  EXPECT_EQ(r.scenes[0].cells[0].worst()->law, "b");
+  EXPECT_TRUE(std::isinf(r.scenes[0].cells[1].worst()->ratio)) << "no ratio is the worst";
+  EXPECT_EQ(r.scenes[1].cells[1].worst(), nullptr);
+  const nlohmann::json j = r;
+  EXPECT_EQ(j["failed"], 2);
+  EXPECT_EQ(j["checked"], 5);
+  EXPECT_EQ(j["scenes"][0]["operators"][0]["laws"][1]["passed"], false);
+  EXPECT_EQ(j["scenes"][0]["operators"][1]["laws"][0]["ratio"], "infinity");
+  const std::string text = text_table(r);
+  const auto times = [](const std::string& of, const std::string& word) {
+    int n = 0;
+    for (std::size_t at = 0; (at = of.find(word, at)) != std::string::npos; at += word.size()) ++n;
+    return n;
+  };
+  EXPECT_EQ(times(text, "FAILED  scene_a"), 2);
+  EXPECT_EQ(times(text, "1 FAILED, worst"), 2);
+  EXPECT_EQ(times(text, "hold, worst"), 1);
+  EXPECT_EQ(times(text, "not checked"), 1);
+  const std::string html = page(r);
+  EXPECT_NE(html.find("✗ 2</span>"), std::string::npos);
+  EXPECT_EQ(html.find("all hold"), std::string::npos);
+  EXPECT_EQ(times(html, "Laws that failed"), 1);
+  EXPECT_EQ(times(html, "<li><code>first · scene_a · b</code>"), 1);
+  EXPECT_EQ(times(html, "<li><code>second · scene_a · a</code>"), 1);
+}
+
+TEST(Results, LawsThatHoldAreNotFailed) {
+  Results r = some_results();
+  for (SceneResult& s : r.scenes)
+    for (Cell& c : s.cells) std::erase_if(c.laws, [](const LawResult& l) { return !l.passed; });
+  EXPECT_EQ(r.checked(), 3);
+  EXPECT_EQ(r.failed(), 0);
+  EXPECT_EQ(exit_code(r), 0);
+  EXPECT_EQ(text_table(r).find("FAILED"), std::string::npos);
+  EXPECT_EQ(page(r).find("Laws that failed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace delassus::bench
+
+namespace delassus::accuracy {
+namespace {
+
+/// m bodies of mass 1/2^k on sliders along x, each with a row on it: A = diag(2^k) + R⁻¹.
+Problem<double> sliders(Index m) {
+  Structure s;
+  for (Index k = 0; k < m; ++k) {
+    s.add_body(ground, 1);
+    s.add_link_constraint(1, {k});
+  }
+  Problem<double> p(std::make_shared<const Structure>(s));
+  for (Index k = 0; k < m; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    p.S[i][3] = p.K[i][3] = 1;
+    p.H[i](3, 3) = std::ldexp(1.0, -static_cast<int>(k));
+  }
+  return p;
+}
+
+TEST(Errors, OfAKnownPerturbation) {
+  constexpr double damping = 0.25;
+  const Problem<double> p = sliders(2);  // A = diag(1, 2) + 1/4
+  VectorX<double> a(2);
+  a << 1.25, 4.5;  // λ = (1, 2)
+  const Truth truth(p, Damping<double>::uniform(2, damping), a);
+  ASSERT_TRUE(truth.known()) << truth.why_not();
+  EXPECT_NEAR(truth.largest_eigenvalue(), 2, 0.1);
+  EXPECT_NEAR(truth.condition(), 2.25 / 1.25, 0.2);
+  VectorX<Quad> lambda(2), nu(2);
+  lambda << Quad(1), Quad(2);
+  nu << Quad(1), Quad(4);  // M⁻¹Jᵀλ
+  const Errors none = truth.errors_of({lambda, {}}), none_either = truth.errors_of({lambda, nu});
+  for (const double e : {none.lambda, none.motion, none.energy, none.backward, none_either.motion, none_either.energy}) EXPECT_LT(e, 1e-30);
+
+  const double d = 1e-3;
+  lambda[1] += Quad(d);
+  // ‖ν‖²_M = 1 + ½ 16 = 9, λᵀa = 10.25; δν = (0, 2d): ½ 4d² = 2d²
+  const Errors e = truth.errors_of({lambda, {}});
+  const auto expect = [](double x, double expected) { EXPECT_NEAR(x, expected, 1e-6 * expected); };
+  expect(e.lambda, d / 2);
+  expect(e.motion, d * std::sqrt(2.0 / 9));
+  expect(e.energy, d * std::sqrt(damping / 10.25));
+  EXPECT_NEAR(e.backward, 2.25 * d / (2.25 * std::sqrt(5.0) + std::hypot(1.25, 4.5)), 0.05 * d);
+  const Errors both = truth.errors_of({lambda, nu});  // the motion is right
+  EXPECT_LT(both.motion, 1e-30);
+  expect(both.energy, d * std::sqrt(damping / 10.25));
+  nu[0] += Quad(d);
+  const Errors moved = truth.errors_of({lambda, nu});
+  expect(moved.motion, d / 3);
+  expect(moved.energy, d * std::sqrt((1 + damping) / 10.25));
+  lambda[0] = Quad(std::nan(""));
+  EXPECT_TRUE(std::isnan(truth.errors_of({lambda, {}}).lambda));
+}
+
+TEST(Claims, HoldOnlyWhereEveryErrorIsSmallAndEveryCertificateTrue) {
+  const auto table = [](double motion, double lambda, double energy, double bound, double damping = 1e-6) {
+    Cell c;
+    c.rung = "ladder";
+    c.status = "ok";
+    c.errors = {lambda, motion, energy, 0};
+    c.error_bound = bound;
+    Level level;
+    level.damping = damping;
+    level.cells = {c};
+    return std::vector<Table>{{"scene", true, 1, 1, 0, {level}}};
+  };
+  const auto holds = [&](const std::vector<Table>& t) {
+    const std::vector<Claim> made = claims(t, "ladder");
+    return made.size() == 1 && made[0].levels == 1 && made[0].holds();
+  };
+  EXPECT_TRUE(holds(table(0.5 * claimed_motion, 0.5 * claimed_lambda, 1e-16, 2e-16)));
+  EXPECT_FALSE(holds(table(2 * claimed_motion, 0, 0, 0)));
+  EXPECT_FALSE(holds(table(0, 2 * claimed_lambda, 0, 0)));
+  EXPECT_FALSE(holds(table(0, 0, 2e-16, 1e-16))) << "the bound is below the error";
+  EXPECT_FALSE(holds(table(0, 0, 0, -1))) << "no bound";
+  EXPECT_FALSE(holds(table(std::nan(""), std::nan(""), std::nan(""), -1))) << "no answer is no small error";
+  EXPECT_TRUE(std::isinf(claims(table(std::nan(""), 0, 0, 0), "ladder")[0].motion));
+  EXPECT_TRUE(holds(table(0, 0, 0, 0, claimed_from)) && holds(table(0, 0, 0, 0, claimed_to)));
+  EXPECT_TRUE(claims(table(0, 0, 0, 0, 10 * claimed_to), "ladder").empty());
+  EXPECT_TRUE(claims(table(0, 0, 0, 0), "lcaba").empty());
+}
+
+TEST(Digits, AreThoseOfTheError) {
+  EXPECT_EQ(digits(0), 16);
+  EXPECT_NEAR(digits(1e-5), 5, 1e-12);
+  EXPECT_EQ(digits(3), 0);
+  EXPECT_EQ(digits(1e-40), 16);
+}
+
+}  // namespace
+}  // namespace delassus::accuracy
