@@ -17,10 +17,11 @@ template <class T> void DenseCholesky<T>::do_analyze() {
   damping_.analyze(s);
 }
 
-// M_kl = S_kᵀ H^c_j S_l for l a degree of freedom of joint j and k one of j's own or an ancestor's: the lower triangle, and
-// within a joint what is above it.
+// M_kl = S_kᵀ H^c_j S_l for l a degree of freedom of joint j and k one of j's own or an ancestor's: in leaf-first order the
+// lower triangle, and within a joint what is above it.
 template <class T> void DenseCholesky<T>::assemble_M(const Problem<T>& problem) {
   const Structure& s = *this->structure();
+  const Index last = M_.rows() - 1;
   M_.setZero();
   composite_ = problem.H;
   for (Index j = s.bodies(); j-- > 0;) {
@@ -28,8 +29,8 @@ template <class T> void DenseCholesky<T>::assemble_M(const Problem<T>& problem) 
     for (Index l = s.first_dof[j]; l < s.first_dof[j + 1]; ++l) {
       const Vector6<T> F = composite_[j] * problem.S[l];
       for (Index i = j; i != ground; i = s.parent[i])
-        for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) M_(l, k) = problem.S[k].dot(F);
-      M_(l, l) += problem.armature[l];
+        for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) M_(last - k, last - l) = problem.S[k].dot(F);
+      M_(last - l, last - l) += problem.armature[l];
     }
   }
 }
@@ -37,16 +38,17 @@ template <class T> void DenseCholesky<T>::assemble_M(const Problem<T>& problem) 
 // Jᵀ: K_e^i S_k along the path from body i to its root; 𝒦_i on its own joint.
 template <class T> void DenseCholesky<T>::assemble_J(const Problem<T>& problem) {
   const Structure& s = *this->structure();
+  const Index last = Y_.rows() - 1;
   Y_.setZero();
   for (const auto& e : s.link_constraints)
     for (const auto& link : e.links)
       for (Index i = link.body; i != ground; i = s.parent[i])
         for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k)
-          for (Index r = 0; r < e.rows; ++r) Y_(k, e.row + r) += problem.K[link.first + r].dot(problem.S[k]);
+          for (Index r = 0; r < e.rows; ++r) Y_(last - k, e.row + r) += problem.K[link.first + r].dot(problem.S[k]);
   for (const auto& j : s.joint_constraints)
     for (Index r = 0; r < j.rows; ++r)
       for (Index c = 0; c < s.dofs(j.body); ++c)
-        Y_(s.first_dof[j.body] + c, j.row + r) += problem.joint_K[j.first + r * s.dofs(j.body) + c];
+        Y_(last - s.first_dof[j.body] - c, j.row + r) += problem.joint_K[j.first + r * s.dofs(j.body) + c];
 }
 
 template <class T> Report DenseCholesky<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
@@ -54,7 +56,7 @@ template <class T> Report DenseCholesky<T>::do_update(const Problem<T>& problem,
   assemble_M(problem);
   assemble_J(problem);
   const Index lost = ldlt_factor(M_.data(), n, n);  // M = L D Lᵀ
-  factored_M_ = lost < 0 ? Report{} : Report{Status::lost_pivot, lost};
+  factored_M_ = lost < 0 ? Report{} : Report{Status::lost_pivot, n - 1 - lost};
   if (!factored_M_.ok()) return factored_M_;
   for (Index c = 0; c < m; ++c) {
     T* const y = Y_.data() + c * n;

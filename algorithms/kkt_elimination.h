@@ -7,16 +7,17 @@
 // Rank     hard rows are judged by their angles, relative to the numbers they were made from (hard_rows.h); damped ones have no
 //          part in it. The pivot of a row with scalar damping is at least R⁻¹_rr, whatever rounding left of it.
 //            kkt_elimination   leaves dependent rows out (λ_r = 0) and names them in dependent_rows(); a that is not in the
-//                              range of A is `inconsistent`: what the others leave of a row left out exceeds
-//                              30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of hard_rows.h: as far as a row
-//                              that was called dependent can be off, and the rounding of its product.
+//                              range of A is `inconsistent`: what the others leave of a row left out, a_r − J_r ν with the
+//                              refined ν, exceeds 30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of
+//                              hard_rows.h: as far as a row that was called dependent can be off, and the rounding of J_r ν,
+//                              |J_rj||ν_j| ≤ b_rj √(M⁻¹)_jj ‖ν‖_M. Judged at full accuracy, whatever was wanted.
 //            dense_refined     reports lost_pivot.
 // Bound    on r₂ᵀA⁻¹r₂ of the rows not left out, where a row is hard: L D Lᵀ = (Y + E)(Y + E)ᵀ, A = Y Yᵀ, |E_r| ≤ (k + 30) eps s_r,
 //          s_r² = B_r + R⁻¹_rr, k rows. The singular values of Y + E, its rows divided by s_r, are at least 1/√τ with the trace
 //          τ = Σ s_r² ((L D Lᵀ)⁻¹)_rr; those of Y at least t times that, t = 1 − √k (k + 30) eps √τ, and
 //          r₂ᵀA⁻¹r₂ ≤ ‖D^(−½) L⁻¹ r₂‖² / t². None when t < ½. Rigorous up to the rounding of M's factor, for which the 30 stands.
 // Cost     update: m sweeps of the factor of M, m³/3 or that of hard_rows.h and m³/3 for τ; solve: per step 2 m² + 4 sweeps + a residual.
-// Workspace  refinement's + 2 m.
+// Workspace  refinement's + n + 2 m.
 // Error    refined.
 // Source   paper, section II; refinement.h.
 #pragma once
@@ -50,7 +51,7 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   Index factor_by_rows();
   Index factor_by_pivots();
   void solve_multipliers(const T* right, T* lambda, T* work) const;
-  [[nodiscard]] Report check_dependent(const T* a, const T* f) const;
+  [[nodiscard]] Report check_dependent(const T* a, const T* f, const T* nu, T* work) const;
   [[nodiscard]] double trust_in_factor();
   [[nodiscard]] std::optional<T> bound_at_rows(const T* r2, T* work) const;
 

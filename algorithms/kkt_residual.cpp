@@ -155,5 +155,6 @@ DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
   template void KktResidual<T>::evaluate(const Wide<T>*, const Wide<T>*, const T*, const T*, T*, T*, T*) const;
 DELASSUS_INSTANTIATE_WIDE(double)
 DELASSUS_INSTANTIATE_WIDE(float)
+DELASSUS_INSTANTIATE_WIDE(Quad)
 
 }  // namespace delassus

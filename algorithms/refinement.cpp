@@ -34,9 +34,32 @@ template <class T> Report Refinement<T>::factor_mass() const {
 template <class T> void Refinement<T>::update_damping(const Damping<T>& damping) {
   residual_.update_damping(damping);
   invertible_ = weights_.assign_inverse(damping);
+  stiffest_ = 0;
+  if (!invertible_.ok()) return;
+  const auto at = [this](const T& R) { stiffest_ = std::max(stiffest_, std::sqrt(std::abs(static_cast<double>(R)))); };
+  Index e = 0;
+  const auto look = [&](Index row, Index rows) {
+    const T* const block = weights_.dense(e++);
+    for (Index r = 0; r < rows; ++r) at(block != nullptr ? block[r * rows + r] : weights_.diagonal(row + r));
+  };
+  for (const auto& c : structure_->link_constraints) look(c.row, c.rows);
+  for (const auto& c : structure_->joint_constraints) look(c.row, c.rows);
 }
 
 namespace {
+// Where products of two floats may leave the range of float.
+template <class T> using Products = std::conditional_t<std::is_same_v<T, float>, double, T>;
+
+// xᵀ y
+template <class T> Products<T> inner(const T* x, const T* y, Index n) {
+  if constexpr (std::is_same_v<Products<T>, T>) return dot(x, y, n);
+  else {
+    Products<T> sum(0);
+    for (Index k = 0; k < n; ++k) sum += Products<T>(x[k]) * Products<T>(y[k]);
+    return sum;
+  }
+}
+
 template <class X> double magnitude(const X& x) { return std::abs(static_cast<double>(x)); }
 
 // The larger one; b when it is not a number.
@@ -54,7 +77,7 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::start(Buffers
   std::copy(b.d_lambda, b.d_lambda + b.m, b.lambda);
   std::copy(b.d_lambda, b.d_lambda + b.m, b.f);
   Progress now;
-  now.size = std::isfinite(magnitude(dot(b.r1, b.d_nu, b.n) + dot(b.a, b.f, b.m))) ? 1 : std::numeric_limits<double>::quiet_NaN();
+  now.size = std::isfinite(magnitude(Products<T>(inner(b.r1, b.d_nu, b.n) + inner(b.a, b.f, b.m)))) ? 1 : std::numeric_limits<double>::quiet_NaN();
   now.motion = largest_magnitude(b.d_nu, b.n);
   now.force = largest_magnitude(b.d_lambda, b.m);
   return now;
@@ -70,7 +93,7 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   if (invertible_.ok()) weights_.multiply(b.r2, b.scratch);
   else std::copy(b.d_lambda, b.d_lambda + b.m, b.scratch);
   const double largest = largest_magnitude(b.f, b.m), at_stake = largest_magnitude(b.scratch, b.m);  // max|λ|, max|R r₂|
-  const T energy = dot(b.r1, b.d_nu, b.n) + dot(b.r2, b.d_lambda, b.m), total = dot(b.f, b.a, b.m);
+  const Products<T> energy = inner(b.r1, b.d_nu, b.n) + inner(b.r2, b.d_lambda, b.m), total = inner(b.f, b.a, b.m);
 
   Progress now;
   now.motion = largest_magnitude(b.d_nu, b.n);
@@ -86,23 +109,35 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   return now;
 }
 
-// r₂ᵀR r₂
+template <class T> int Refinement<T>::scale(const T* from, T* to, Index n) {
+  int exponent = 0;
+  if constexpr (!ScalarTraits<T>::exact) static_cast<void>(std::frexp(largest_magnitude(from, n), &exponent));
+  const auto scaled = [&](const T& x, int e) { return T(x * T(std::ldexp(1.0, e))); };
+  const int half = exponent / 2;  // 2^(−e) itself may be beyond the scalar
+  for (Index k = 0; k < n; ++k) to[k] = exponent == 0 ? from[k] : scaled(scaled(from[k], -half), half - exponent);
+  return exponent;
+}
+
+// r₂ᵀR r₂, of r₂ as scaled
 template <class T> std::optional<T> Refinement<T>::soft_rows(Buffers& b) const {
-  weights_.multiply(b.r2, b.scratch);
-  return dot(b.r2, b.scratch, b.m);
+  weights_.multiply(b.d_lambda, b.scratch);
+  return dot(b.d_lambda, b.scratch, b.m);
 }
 
 // B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
-template <class T> double Refinement<T>::bound(const Buffers& b, const T& motion, const T& rows) const {
-  const double of_motion = std::sqrt(magnitude(motion)), of_rows = std::sqrt(magnitude(rows));
-  const double bound = invertible_.ok() ? std::sqrt(magnitude(T(motion + rows))) : of_motion + of_rows;
-  const double s = static_cast<double>(dot(b.f, b.a, b.m));
-  if (bound > 0 && !(s > 0)) return std::numeric_limits<double>::infinity();
+template <class T>
+typename Refinement<T>::Certificate Refinement<T>::bound(const Buffers& b, const Square& motion, const Square& rows) const {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto root = [](const Square& x) { return std::ldexp(std::sqrt(magnitude(x.value)), x.exponent); };
+  const double of_motion = root(motion), of_rows = root(rows);
+  const double bound = invertible_.ok() ? std::hypot(of_motion, of_rows) : of_motion + of_rows;
+  const double s = static_cast<double>(inner(b.f, b.a, b.m)), largest = largest_magnitude(b.f, b.m);
+  if (bound > 0 && !(s > 0)) return {infinite, infinite};
   const double at_rows = invertible_.ok() ? largest_magnitude(b.r2, b.m) : 0;
-  if (bound == 0 && largest_magnitude(b.r1, b.n) + at_rows > 0)  // squares underflow
-    return std::numeric_limits<double>::infinity();
+  if ((of_motion == 0 && largest_magnitude(b.r1, b.n) > 0) || (of_rows == 0 && at_rows > 0))  // lost
+    return {infinite, infinite};
   const double t = relative(bound, std::sqrt(s));
-  return t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<T>;
+  return {t * (t + std::sqrt(t * t + 4)) / 2 + 2 * unit_roundoff<T>, invertible_.ok() ? relative(stiffest_ * bound, largest) : infinite};
 }
 
 template <class T> Index Refinement<T>::workspace(Index of_correction) const {

@@ -9,15 +9,18 @@
 //          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
 //          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
 //          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that is below eps; where rows are
-//          hard, when moreover the correction itself is below 4 eps; those of a patient correction, which is fast in most
+//          hard, when moreover the correction itself is below 4 eps. The first correction is compared with the solution, and the
+//          largest force may hide the rows that converge slowly: it ends the steps only when it is itself below 4 eps, or when
+//          the certificate below leaves no row more than eps of the largest force, √R_rr B ≤ eps max|λ|. Those of a patient correction, which is fast in most
 //          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
-//          are divergence: not_converged. So is the last step allowed, unless the last correction is below 4 eps and no
-//          certificate above 8 eps: then no step would add a digit.
+//          are divergence: not_converged. So is the last step allowed, unless no certificate is above 8 eps, and the last correction
+//          or what the certificate leaves a row, √R_rr B / max|λ|, is below 4 eps: then no step would add a digit.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
 //          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
 //          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
-//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0 or B² underflows.
+//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. r₁ and r₂ are scaled by powers of two, each to a largest
+//          entry of about one, before they are squared; where even so a square is lost, error_bound is infinite.
 //          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
 //          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
 // Hard rows, R⁻¹ = 0: from (K), ‖δν‖²_M + ‖δλ‖²_{R⁻¹} ≤ r₁ᵀM⁻¹r₁ + r₂ᵀA⁻¹r₂ and ‖δλ‖_A ≤ B = √(r₁ᵀM⁻¹r₁) + √(r₂ᵀA⁻¹r₂). Whoever
@@ -31,6 +34,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -88,6 +92,10 @@ template <class T> class Refinement {
   Report solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
                     T* nu = nullptr, const AtRows& at_rows = {}) const;
 
+  /// r₁ = Jᵀλ − M ν and r₂ = a − J ν − R⁻¹λ in T. Shapes n, m, m, n, m; `work` as for solve without its vectors.
+  void residual(const T* nu, const T* lambda, const T* a, T* r1, T* r2, T* work) const {
+    residual_.evaluate(nu, lambda, nullptr, a, r1, r2, work);
+  }
   [[nodiscard]] Index workspace(Index of_correction) const;
   [[nodiscard]] Index bytes() const;
 
@@ -103,18 +111,35 @@ template <class T> class Refinement {
   static bool enough(const Report& r, const Progress& now, double wanted) {
     return r.error_bound >= 0 ? r.error_bound <= wanted : r.iterations > 0 && wanted > 0 && now.patient <= wanted;
   }
+  /// B relative to the solution, −1: none; and √R_rr B of the row where it is largest, relative to the largest force.
+  struct Certificate {
+    double relative = -1, at_a_row = std::numeric_limits<double>::infinity();
+  };
   /// Nothing left to gain.
-  static bool at_rounding(const Report& r) {
-    return r.error_bound <= 8 * unit_roundoff<T> && r.error_estimate >= 0 && r.error_estimate <= 4 * unit_roundoff<T>;
+  static bool at_rounding(const Report& r, const Certificate& c) {
+    const bool correction = r.error_estimate >= 0 && r.error_estimate <= 4 * unit_roundoff<T>;
+    return r.error_bound <= 8 * unit_roundoff<T> && (correction || c.at_a_row <= 4 * unit_roundoff<T>);
+  }
+  /// Whether ρ, or what does not depend on it, was seen in all rows.
+  static bool shown(const Report& r, const Progress& now, const Certificate& c) {
+    return r.iterations != 1 || now.size <= 4 * unit_roundoff<T> || c.at_a_row <= unit_roundoff<T>;
   }
   Progress start(Buffers& b) const;
   Progress advance(Buffers& b, const Progress& before) const;
-  template <class Energy, class AtRows> double certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
-    const std::optional<T> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.r2, b.scratch);
-    return rows ? bound(b, energy(b.r1, b.rest), *rows) : -1;
+  /// Overwrites the correction.
+  template <class Energy, class AtRows> Certificate certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
+    const int of_r1 = scale(b.r1, b.d_nu, b.n), of_r2 = scale(b.r2, b.d_lambda, b.m);
+    const std::optional<T> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.d_lambda, b.scratch);
+    return rows ? bound(b, {energy(b.d_nu, b.rest), of_r1}, {*rows, of_r2}) : Certificate{};
   }
+  /// to = 2^(−e) from, of a largest magnitude between ½ and 1. Returns e; 0 where the scalar is exact or all is zero.
+  static int scale(const T* from, T* to, Index n);
+  struct Square {
+    T value;
+    int exponent;  // of its root
+  };
   std::optional<T> soft_rows(Buffers& b) const;
-  double bound(const Buffers& b, const T& motion, const T& rows) const;
+  Certificate bound(const Buffers& b, const Square& motion, const Square& rows) const;
 
   std::shared_ptr<const Structure> structure_;
   KktResidual<T> residual_;
@@ -126,6 +151,7 @@ template <class T> class Refinement {
   mutable std::mutex factoring_M_;
   BlockDiagonal<T> weights_;
   Report invertible_;
+  double stiffest_ = 0;  // max √R_rr
 };
 
 // One column's vectors, zero up to their padded ends; Wide ones first, so that everything stays aligned.
@@ -164,12 +190,18 @@ Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps,
     // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
     if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
     else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
-    if (done || wanted.error > 0) report.error_bound = certify(b, energy, at_rows);
-    if (done || enough(report, now, wanted.error)) break;
+    Certificate certificate;
+    if (done || wanted.error > 0) {
+      certificate = certify(b, energy, at_rows);
+      report.error_bound = certificate.relative;
+    }
+    if ((done && shown(report, now, certificate)) || enough(report, now, wanted.error)) break;
+    if (done) residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
     if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
-      report.error_bound = certify(b, energy, at_rows);
-      if (wanted.error > 0 || !at_rounding(report)) report.status = Status::not_converged;
+      certificate = certify(b, energy, at_rows);
+      report.error_bound = certificate.relative;
+      if (wanted.error > 0 || !at_rounding(report, certificate)) report.status = Status::not_converged;
       break;
     }
     correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);

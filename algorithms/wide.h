@@ -1,5 +1,5 @@
-// Twice the digits for residuals: Wide<double> = DoubleDouble (106 bits by error-free transformations),
-// Wide<float> = double, and any other scalar itself.
+// Twice the digits for residuals: Wide<double> = DoubleDouble (106 bits by error-free transformations), Wide<Quad> the same on
+// Quad (226 bits), Wide<float> = double, and any other scalar itself.
 //
 // Files that include this header must be compiled with -ffp-contract=off: the transformations below are exact only when
 // every operation is rounded as written.
@@ -8,17 +8,9 @@
 
 #include "algorithms/six.h"
 
-namespace delassus {
+extern "C" __float128 fmaq(__float128, __float128, __float128) noexcept;  // libquadmath's
 
-/// An unevaluated sum hi + lo. It is not normalised: sums collect their rounding errors in lo, which stays within a few eps of
-/// the magnitudes added, so that the whole carries an error of eps² of them.
-struct DoubleDouble {
-  double hi = 0, lo = 0;
-  DoubleDouble() = default;
-  DoubleDouble(double x) : hi(x) {}
-  DoubleDouble(double h, double l) : hi(h), lo(l) {}
-  explicit operator double() const { return hi + lo; }
-};
+namespace delassus {
 
 /// Exact: a + b = value + error, for any real type with lane-wise arithmetic.
 template <class R> struct Exact { R value, error; };
@@ -26,24 +18,37 @@ template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> two_sum(con
   const R s = a + b, bb = s - a;
   return {s, (a - (s - bb)) + (b - bb)};
 }
+[[nodiscard]] inline Quad fused(const Quad& a, const Quad& b, const Quad& c) { return Quad(fmaq(a.v, b.v, c.v)); }
 /// x (y.hi + y.lo) as value + error, to eps² of it.
 template <class R> [[nodiscard, gnu::always_inline]] inline Exact<R> product(const R& x, const R& hi, const R& lo) {
   const R p = x * hi;
   return {p, fused(x, lo, fused(x, hi, R(-p)))};
 }
 
-[[gnu::always_inline]] inline DoubleDouble& operator+=(DoubleDouble& x, const DoubleDouble& y) {
-  const auto s = two_sum(x.hi, y.hi);
-  return x = {s.value, s.error + (x.lo + y.lo)};
-}
-inline DoubleDouble operator-(const DoubleDouble& x) { return {-x.hi, -x.lo}; }
-inline DoubleDouble& operator-=(DoubleDouble& x, const DoubleDouble& y) { return x += -y; }
-inline DoubleDouble operator+(DoubleDouble x, const DoubleDouble& y) { return x += y; }
-inline DoubleDouble operator-(DoubleDouble x, const DoubleDouble& y) { return x -= y; }
-inline DoubleDouble operator*(const DoubleDouble& x, double s) {
-  const auto p = product(s, x.hi, x.lo);
-  return {p.value, p.error};
-}
+/// An unevaluated sum hi + lo. It is not normalised: sums collect their rounding errors in lo, which stays within a few eps of
+/// the magnitudes added, so that the whole carries an error of eps² of them.
+template <class T> struct TwoFold {
+  T hi{}, lo{};
+  TwoFold() = default;
+  TwoFold(const T& x) : hi(x) {}
+  TwoFold(const T& h, const T& l) : hi(h), lo(l) {}
+  explicit operator T() const { return hi + lo; }
+
+  [[gnu::always_inline]] friend TwoFold& operator+=(TwoFold& x, const TwoFold& y) {
+    const auto s = two_sum(x.hi, y.hi);
+    return x = {s.value, s.error + (x.lo + y.lo)};
+  }
+  friend TwoFold operator-(const TwoFold& x) { return {-x.hi, -x.lo}; }
+  friend TwoFold& operator-=(TwoFold& x, const TwoFold& y) { return x += -y; }
+  friend TwoFold operator+(TwoFold x, const TwoFold& y) { return x += y; }
+  friend TwoFold operator-(TwoFold x, const TwoFold& y) { return x -= y; }
+  friend TwoFold operator*(const TwoFold& x, const T& s) {
+    const auto p = product(s, x.hi, x.lo);
+    return {p.value, p.error};
+  }
+  friend TwoFold operator*(const T& s, const TwoFold& x) { return x * s; }
+};
+using DoubleDouble = TwoFold<double>;
 
 /// Six unevaluated sums.
 template <> struct Six<DoubleDouble> {
@@ -90,12 +95,13 @@ inline void sums(const Six<DoubleDouble> (&p)[4], DoubleDouble (&sum)[4], Index)
 template <class T> struct WideOf { using type = T; };
 template <> struct WideOf<double> { using type = DoubleDouble; };
 template <> struct WideOf<float> { using type = double; };
+template <> struct WideOf<Quad> { using type = TwoFold<Quad>; };
 template <class T> using Wide = typename WideOf<T>::type;
 
 /// x rounded to T.
 template <class T> [[nodiscard]] inline T narrow(const Wide<T>& x) {
   if constexpr (std::is_same_v<Wide<T>, T>) return x;
-  else return static_cast<T>(static_cast<double>(x));
+  else return static_cast<T>(x);
 }
 
 }  // namespace delassus

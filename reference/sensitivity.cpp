@@ -161,7 +161,9 @@ VectorX<double> Sensitivity::apply_sensitivity(const VectorX<double>& x) const {
   const Data& d = *data_;
   const Vector force = d.J_abs.transpose() * x.cwiseAbs();
   const Vector rate = d.M_inverse_abs * force;                             // |M⁻¹| J_absᵀ |x|
-  const Vector change = rate + d.M_inverse_abs * (d.M_bound * rate);         // and through δM
+  const Vector through = d.M_inverse_abs * (d.M_bound * rate);             // through δM
+  const Vector twice = d.M_inverse_abs * (d.M_bound * through);            // and twice, of second order
+  const Vector change = rate + through + unit_roundoff<double> * twice;
   return d.J_abs * change + d.R_inverse_abs * x.cwiseAbs();
 }
 

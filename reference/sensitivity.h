@@ -10,7 +10,9 @@
 // (Higham, Accuracy and Stability, section 10.1). The factors are left to the 30.
 //
 // apply    y = J M⁻¹ Jᵀ x + R⁻¹ x gives   δy = δJ M⁻¹Jᵀx + J M⁻¹ δJᵀ x − J M⁻¹ δM M⁻¹ Jᵀ x + δR⁻¹ x, hence
-//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|.
+//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|
+//          and ε J_abs|M⁻¹|M_bound|M⁻¹|M_bound|M⁻¹|J_absᵀ|x|, of second order: it counts where the others are zero because both
+//          couplings of two branches to the joint between them happen to cancel exactly, which rounding does not see.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
