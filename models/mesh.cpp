@@ -239,10 +239,12 @@ class Hulls {
 
 void add_hulls(Model& model, const Robot& robot, Index most, double margin, Findings& found) {
   if (robot.meshes.empty()) return;
+  const std::string without = has_hulls() ? "assimp" : has_mesh_files() ? "qhull" : "assimp and qhull";
+  const std::string package = has_hulls() ? "libassimp-dev" : has_mesh_files() ? "libqhull-dev" : "libassimp-dev and libqhull-dev";
   if (!has_mesh_files() || !has_hulls())
     return found.warn("mesh not read", robot.file, "<mesh>",
-                      std::to_string(robot.meshes.size()) + " collision meshes are not read: built without " + (has_mesh_files() ? "qhull" : "assimp"),
-                      "without them these shapes touch nothing; libassimp-dev and libqhull-dev when building, or collision primitives");
+                      std::to_string(robot.meshes.size()) + " collision meshes are not read and touch nothing: built without " + without,
+                      "install " + package + " and build again, or give collision primitives");
   Hulls(model, robot, most, margin, found).run();
 }
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <set>
 
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/mjcf_reader.h"
 
@@ -28,7 +28,7 @@ Pose<double> mujoco_pose(const double* position, const double* quaternion) { ret
 
 MjcfReader::MjcfReader(Model& model, const RobotOptions& options)
     : model_(model), options_(options), file_(compile_mjcf(options.file)), m_(*file_.model), findings_(options.strict),
-      link_(z(m_.nbody)), body_of_(z(m_.njnt), ground), first_(static_cast<Index>(model.bodies.size())) {}
+      link_(z(m_.nbody)), body_of_(z(m_.njnt), ground), bodies_(model, options), lines_(options.file) {}
 
 Robot MjcfReader::run() {
   out_.name = options_.robot;
@@ -41,7 +41,8 @@ Robot MjcfReader::run() {
   link_[0] = {ground, options_.pose};
   for (int b = 1; b < m_.nbody; ++b) add_link(b);
   add_shapes();
-  finish_bodies();
+  bodies_.sum();
+  bodies_.add_to(model_, out_);
   add_equalities();
   add_notes();
   out_.notes = std::move(findings_.notes);
@@ -80,20 +81,22 @@ void MjcfReader::choose_pose() {
     if (m_.nkey > 0) findings_.note(options_.robot + ": the pose is the one the file is drawn in; its keyframes (" + keys + ") are left alone (keyframe: NAME takes one)");
     return;
   }
+  std::vector<std::string> names;
   for (int k = 0; k < m_.nkey; ++k)
-    if (options_.keyframe == name(mjOBJ_KEY, k) || options_.keyframe == std::to_string(k)) {
+    if (names.push_back(name(mjOBJ_KEY, k)); options_.keyframe == names.back() || options_.keyframe == std::to_string(k)) {
       qpos_.assign(m_.key_qpos + k * m_.nq, m_.key_qpos + (k + 1) * m_.nq);
       return;
     }
-  fail("keyframe", in_quotes(options_.keyframe) + " does not exist", keys.empty() ? "the file has no keyframe" : keys);
+  throw RequestError(options_.file, "keyframe", "", in_quotes(options_.keyframe) + " does not exist",
+                     keys.empty() ? "no keyframe, since the file has none; give the pose by joints: {name: value}" : did_you_mean(options_.keyframe, names) + keys + "; take one of these");
 }
 
 void MjcfReader::check_options() const {
-  if (!options_.joint_types.empty()) fail("joint_types of the scene", "an MJCF file says its joint types itself", "no joint_types");
-  std::set<std::string> names;
-  for (int j = 0; j < m_.njnt; ++j) names.insert(joint_name(j));
-  for (const auto& [key, value] : options_.armature)
-    if (names.count(key) == 0) fail("armature of the scene", "joint " + in_quotes(key) + " does not exist", "a joint of this file");
+  if (!options_.joint_types.empty())
+    throw RequestError(options_.file, "joint_types", options_.joint_types.begin()->first, "MJCF states the types of its joints", "no joint_types; change <joint type> in the file");
+  std::vector<std::string> moving;
+  for (int j = 0; j < m_.njnt; ++j) moving.push_back(joint_name(j));
+  check_named_joints(options_, moving, {});
 }
 
 /// `base: free` and `planar` need one root that floats or stands on the world.
@@ -107,20 +110,10 @@ void MjcfReader::check_base() {
     roots += (roots.empty() ? "" : ", ") + link_name(b) + (floats ? " (free)" : m_.body_jntnum[b] == 0 ? " (fixed)" : " (on joints of its own)");
     count += floats || m_.body_jntnum[b] == 0 ? 1 : 2;
   }
-  if (count != 1) fail("base of the scene", "the roots of this file are " + (roots.empty() ? "none" : roots), "one root that is free or fixed; otherwise base: fixed, or no base");
+  if (count != 1) throw RequestError(options_.file, "base", "", "the roots of this file are " + (roots.empty() ? "none" : roots), "one root that is free or fixed; leave base out, or base: fixed");
 }
 
 void MjcfReader::start(Index body, std::vector<double> q) { out_.start.emplace_back(body, std::move(q)); }
-
-Index MjcfReader::add_body(const std::string& name, Index parent, Joint joint) {
-  Body body;
-  body.name = options_.robot + "/" + name;
-  body.parent = parent;
-  body.joint = std::move(joint);
-  bodies_.push_back(std::move(body));
-  parts_.emplace_back();
-  return first_ + static_cast<Index>(bodies_.size()) - 1;
-}
 
 /// `link` in a parent that is the world: the joint of `base` instead of the file's.
 void MjcfReader::add_base(int b, const Pose<double>& link, JointType type) {
@@ -129,7 +122,7 @@ void MjcfReader::add_base(int b, const Pose<double>& link, JointType type) {
   joint.type = type;
   if (type == JointType::planar) joint.placement = link;
   if (out_.root_joint.empty() && bodies_.empty()) out_.root_joint = joint.name;
-  const Index i = add_body(link_name(b), ground, joint);
+  const Index i = bodies_.add(link_name(b), ground, joint, lines_.line("body", link_name(b)));
   link_[z(b)] = {i, {}};
   if (type == JointType::planar) return;
   const Eigen::Quaterniond r(link.rotation);
@@ -154,11 +147,11 @@ void MjcfReader::add_link(int b) {
   } else if (base == Base::fixed) {
     link_[z(b)] = {parent.body, link};
   } else {
-    if (joints == 0 && file_.fixed_inertia_lost) fail("base of the scene", "the inertia of a link that would move comes from meshes whose files are missing", "the files in their places, or base: fixed");
+    if (joints == 0 && file_.fixed_inertia_lost) throw RequestError(options_.file, "base", "", "the inertia of body " + in_quotes(link_name(b)) + in_line(lines_.line("body", link_name(b))) + ", which would move, comes from meshes whose files are missing", "the files in their places; put them there, or base: fixed");
     add_base(b, link, base == Base::planar ? JointType::planar : JointType::floating);
-    Joint& joint = bodies_.back().joint;
     if (floats) {
       const Index i = link_[z(b)].body;
+      Joint& joint = bodies_.body(i).joint;
       const std::string given = name(mjOBJ_JOINT, j);
       if (!given.empty()) joint.name = options_.robot + "/" + given;
       if (bodies_.size() == 1) out_.root_joint = joint.name;
@@ -182,7 +175,7 @@ void MjcfReader::add_chain(int b, const Pose<double>& link) {
     Joint joint = joint_of(j);
     const Pose<double> turned = joint.placement;  // by −ref
     joint.placement = at * shifted(anchor) * turned;
-    parent = add_body(j + 1 == end ? link_name(b) : link_name(b) + "." + joint_name(j), parent, joint);
+    parent = bodies_.add(j + 1 == end ? link_name(b) : link_name(b) + "." + joint_name(j), parent, joint, lines_.line("body", link_name(b)));
     body_of_[z(j)] = parent;
     out_.joints.emplace(joint_name(j), parent);
     const double* q = qpos_.data() + m_.jnt_qposadr[j];
@@ -230,16 +223,7 @@ void MjcfReader::add_inertia(int b) {
     const Matrix3<double> exact = link.placement.rotation * full->second * link.placement.rotation.transpose();
     if ((exact - I).norm() < 1e-4 * I.norm()) I = exact;
   }
-  parts_[z(link.body - first_)].push_back({m_.body_mass[b], principal.translation, I});
-}
-
-void MjcfReader::finish_bodies() {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Body& body = bodies_[i];
-    sum_parts(parts_[i], body);
-    validate_body(body, options_.file);
-    out_.bodies.push_back(model_.add(std::move(body)));
-  }
+  bodies_.add_part(link.body, {m_.body_mass[b], principal.translation, I});
 }
 
 void MjcfReader::add_notes() {

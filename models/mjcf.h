@@ -12,7 +12,7 @@
 //           tendons → coupling. A polynomial is taken by its tangent at the start pose, with a warning. Rows are hard:
 //           MuJoCo's softness (solref, solimp) is left to `damping` of the scene.
 // Inertia   as MuJoCo compiled it; `fullinertia` is read again from the file, since MuJoCo's principal axes carry a
-//           relative error of about 1e-7.
+//           relative error of up to 1e-6.
 // Said      What MuJoCo warns of becomes a warning, what it refuses an error, in its words. Springs, actuators, spatial
 //           tendons, contact pairs and excludes are left out, with a note.
 #pragma once

@@ -5,7 +5,7 @@ namespace delassus {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file) {
-  throw ModelError(file, "mujoco", "an MJCF file cannot be read: built without MuJoCo (libmujoco-dev)",
+  throw ModelError(file, "mujoco", "an MJCF file cannot be read: built without MuJoCo",
                    "URDF; or install libmujoco-dev (version 2) and build again");
 }
 

@@ -89,7 +89,7 @@ void compile(const std::string& file, const std::string* text, CompiledMjcf& out
 
 CompiledMjcf compile_mjcf(const std::string& file) {
   CompiledMjcf out;
-  const std::string accepted = "a file that MuJoCo " + std::string(mj_versionString()) + " compiles";
+  const std::string accepted = "a file that MuJoCo " + std::string(mj_versionString()) + " compiles; correct what it says, or give the robot as URDF";
   MjcfXml xml(file);
   std::string refused;
   try {

@@ -1,5 +1,4 @@
 // <equality> as constraints: connect, weld, joint, and tendon where all tendons are fixed ones.
-#include <charconv>
 #include <cmath>
 
 #include "models/message.h"
@@ -9,11 +8,6 @@ namespace delassus {
 namespace {
 
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
-
-std::string text(double x) {
-  char out[32];
-  return {out, std::to_chars(out, out + sizeof out, x).ptr};
-}
 
 /// c0 + c1 x + … + c4 x⁴ and its slope.
 struct Polynomial {
@@ -53,7 +47,7 @@ void MjcfReader::add_sites(const SiteEquality& s) {
   c.kind = s.weld ? Constraint::Kind::weld : Constraint::Kind::point;
   for (const auto& [site, frame] : {std::pair{&s.site1, &c.a}, {&s.site2, &c.b}}) {
     const int k = mj_name2id(&m_, mjOBJ_SITE, site->c_str());
-    if (k < 0) fail("equality " + in_quotes(equality), "site " + in_quotes(*site) + " does not exist", "a site of this file");
+    if (k < 0) fail("equality " + in_quotes(equality) + in_line(lines_.line(s.weld ? "weld" : "connect", s.name)), "site " + in_quotes(*site) + " does not exist", "a site of this file; correct the name");
     *frame = link_frame(m_.site_bodyid[k], mujoco_pose(m_.site_pos + 3 * k, m_.site_quat + 4 * k));
   }
   add_loop(std::move(c), equality);
@@ -94,7 +88,7 @@ void MjcfReader::add_joint_equality(int e) {
   const Polynomial p(data, qpos_[z(q2)] - m_.qpos0[q2]);
   if (!p.straight)
     findings_.warn("curved coupling", options_.file, "equality " + in_quotes(equality_name(e)),
-                   "joint " + in_quotes(joint_name(j1)) + " follows a polynomial of joint " + in_quotes(joint_name(j2)) + "; taken is its tangent at " + text(qpos_[z(q2)]) + ", slope " + text(p.slope),
+                   "joint " + in_quotes(joint_name(j1)) + " follows a polynomial of joint " + in_quotes(joint_name(j2)) + "; taken is its tangent at " + number_text(qpos_[z(q2)]) + ", slope " + number_text(p.slope),
                    "right at this pose only: choose it with keyframe, or give the row as a coupling of the scene");
   const double offset = m_.qpos0[q1] + p.value - p.slope * qpos_[z(q2)];
   c.kind = Constraint::Kind::coupling;
@@ -140,10 +134,10 @@ void MjcfReader::add_tendon_equality(int e) {
   double again = 0;
   if (t2 >= 0) static_cast<void>(add_tendon(t2, -p.slope, c.terms, again));
   if (t2 >= 0 && !p.straight)
-    findings_.warn("curved coupling", options_.file, element, "couples tendons by a polynomial; taken is its tangent at the start pose, slope " + text(p.slope), "right at this pose only");
+    findings_.warn("curved coupling", options_.file, element, "couples tendons by a polynomial; taken is its tangent at the start pose, slope " + number_text(p.slope), "right at this pose only");
   const double open = length1 - (t2 >= 0 ? p.value : data[0]);
   if (std::fabs(open) > 1e-9)
-    findings_.warn("open coupling", options_.file, element, "is open by " + text(open) + " at the start pose", "a pose that satisfies it");
+    findings_.warn("open coupling", options_.file, element, "is open by " + number_text(open) + " at the start pose", "a pose that satisfies it");
   model_.constraints.push_back(std::move(c));
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "models/mjcf_compile.h"
-#include "models/parts.h"
-#include "models/robot.h"
+#include "models/robot_bodies.h"
+#include "models/xml_lines.h"
 
 namespace delassus {
 
@@ -20,12 +20,10 @@ class MjcfReader {
   void add_link(int b);
   void add_chain(int b, const Pose<double>& link);
   void add_base(int b, const Pose<double>& link, JointType type);
-  Index add_body(const std::string& name, Index parent, Joint joint);
   [[nodiscard]] Joint joint_of(int j) const;
   void set_rates(int j, Joint& joint) const;
   void start(Index body, std::vector<double> q);
   void add_inertia(int b);
-  void finish_bodies();
   void add_notes();
 
   // mjcf_shapes.cpp
@@ -61,9 +59,8 @@ class MjcfReader {
   std::vector<double> qpos_;        ///< of the start pose
   std::vector<Frame> link_;         ///< per MuJoCo body
   std::vector<Index> body_of_;      ///< per MuJoCo joint; ground when the base of the options replaces it
-  Index first_ = 0;
-  std::vector<Body> bodies_;
-  std::vector<std::vector<Part>> parts_;
+  RobotBodies bodies_;
+  XmlLines lines_;
   Robot out_;
 };
 

@@ -85,7 +85,7 @@ void MjcfReader::add_shape(int g) {
       findings_.warn("shape without contacts", options_.file, element, "a shape of this kind on a moving body is left out", "spheres, capsules, cylinders, boxes, ellipsoids, meshes");
       return;
   }
-  bodies_[static_cast<std::size_t>(at.body - first_)].shapes.push_back(std::move(s));
+  bodies_.body(at.body).shapes.push_back(std::move(s));
 }
 
 void MjcfReader::add_shapes() {

@@ -65,8 +65,8 @@ std::vector<double> numbers(const char* text) {
 
 MjcfXml::MjcfXml(const std::string& file) : file_(file), folder_(fs::path(file).parent_path().string()) {
   if (doc_.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || doc_.RootElement() == nullptr) return;
-  if (is(doc_.RootElement(), "mujocoinclude")) throw ModelError(file, "mujocoinclude", "a part that other files include", "a file with the root element mujoco");
-  if (!is(doc_.RootElement(), "mujoco")) throw ModelError(file, in_quotes(doc_.RootElement()->Name()), "is no MJCF", "the root element mujoco");
+  if (is(doc_.RootElement(), "mujocoinclude")) throw ModelError(file, "<mujocoinclude> (line " + std::to_string(doc_.RootElement()->GetLineNum()) + ")", "is a part that other files include", "a file with the root element mujoco; give the file that includes this one");
+  if (!is(doc_.RootElement(), "mujoco")) throw ModelError(file, "<" + std::string(doc_.RootElement()->Name()) + "> (line " + std::to_string(doc_.RootElement()->GetLineNum()) + ")", "is no MJCF", "the root element mujoco; give an MJCF file");
   include(doc_.RootElement(), folder_, 0);
 }
 
@@ -129,7 +129,7 @@ void MjcfXml::strip_uses(Element* e, bool moves, bool depends) {
       if (geom && (!massless || (c->Attribute("type") != nullptr && attribute(c, "type") != "mesh" && attribute(c, "type") != "hfield")))
         throw ModelError(file_, "geom with " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c),
                          "the file of this " + std::string(kind) + " is missing and " + (massless ? "the shape is fitted to it" : "the inertia of its body comes from it"),
-                         "the file in its place, or <inertial> in the body");
+                         "the file in its place; put it there, or give the body an <inertial>");
       fixed_inertia_lost_ = fixed_inertia_lost_ || (geom && depends);
       if (geom) left_out_.push_back("geom of " + std::string(kind) + " " + in_quotes(attribute(c, attribute_name)) + line_of(c));
       e->DeleteChild(c);

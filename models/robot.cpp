@@ -1,8 +1,11 @@
 #include "models/robot.h"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 #include "algorithms/regularity.h"
+#include "models/closest.h"
 #include "models/message.h"
 #include "models/mjcf.h"
 #include "models/sdf.h"
@@ -23,22 +26,25 @@ constexpr Reader readers[] = {{"robot", "URDF", add_urdf}, {"mujoco", "MJCF", ad
 
 const Reader& reader_of(const std::string& file) {
   tinyxml2::XMLDocument document;
-  const std::string root = load_xml(document, file).Name();
+  const tinyxml2::XMLElement& element = load_xml(document, file);
+  const std::string root = element.Name();
+  const int line = element.GetLineNum();
   std::string known;
   for (const Reader& r : readers) {
     if (root == r.root) return r;
     known += (known.empty() ? "<" : ", <") + std::string(r.root) + "> (" + std::string(r.what) + ")";
   }
-  throw ModelError(file, "root element", in_quotes(root) + " is no robot", known);
+  throw ModelError(file, "<" + root + "> (line " + std::to_string(line) + ")", "this root element is no robot", known + "; a scene of robots is a .yaml file");
 }
 
-/// Whether the robot's part of M is regular; trees do not couple in M.
-void check_regular_robot(const Model& model, std::size_t first, const std::string& file) {
+/// Whether the robot's part of M is regular; trees do not couple in M. Bodies are named with their lines.
+void check_regular_robot(const Model& model, std::size_t first, const std::string& file, const Robot& robot) {
   Model tree;
   for (std::size_t i = first; i < model.bodies.size(); ++i) {
     Body body = model.bodies[i];
     if (body.parent != ground) body.parent -= static_cast<Index>(first);
     body.shapes.clear();
+    body.name += in_line(robot.lines[i - first]);
     tree.add(std::move(body));
   }
   check_regular(tree, file);
@@ -52,13 +58,26 @@ void Findings::warn(std::string kind, const std::string& file, const std::string
   warnings.push_back({std::move(kind), file + ": " + element + ": " + problem + " (" + advice + ")"});
 }
 
+void check_named_joints(const RobotOptions& options, const std::vector<std::string>& moving, const std::map<std::string, std::string>& others) {
+  const auto check = [&](const std::string& key, const std::string& joint) {
+    if (std::find(moving.begin(), moving.end(), joint) != moving.end()) return;
+    if (const auto it = others.find(joint); it != others.end())
+      throw RequestError(options.file, key, joint, "joint " + in_quotes(joint) + " " + it->second, "a moving joint; leave this one out");
+    throw RequestError(options.file, key, joint, "joint " + in_quotes(joint) + " does not exist",
+                       did_you_mean(joint, moving) + "a moving joint of the file; `delassus describe FILE` lists them");
+  };
+  for (const auto& [joint, type] : options.joint_types) check("joint_types", joint);
+  for (const auto& [joint, value] : options.armature) check("armature", joint);
+}
+
 Robot add_robot(Model& model, const RobotOptions& options) {
   const std::size_t first = model.bodies.size();
   const Reader& reader = reader_of(options.file);
   if (!options.keyframe.empty() && reader.what != "MJCF")
-    throw ModelError(options.file, "keyframe", in_quotes(options.keyframe) + ": a " + std::string(reader.what) + " file has no keyframes", "joints: values, or an MJCF file");
+    throw RequestError(options.file, "keyframe", "", in_quotes(options.keyframe) + ": a " + std::string(reader.what) + " file has no keyframes",
+                       "an MJCF file; give the pose by joints: {name: value}");
   Robot robot = reader.read(model, options);
-  check_regular_robot(model, first, options.file);
+  check_regular_robot(model, first, options.file, robot);
   robot.file = options.file;
   robot.mesh_path = options.mesh_path;
   return robot;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/model.h"
+#include "algorithms/status.h"
 
 namespace delassus {
 
@@ -72,6 +73,7 @@ struct Robot {
   std::map<std::string, Frame> links;     ///< every link by its name in the file; merged ones at their place in the body
   std::map<std::string, Index> joints;    ///< moving joints by their name in the file → body they move
   std::vector<Index> bodies;              ///< in order of the model
+  std::vector<int> lines;                 ///< of the file, where the link of each of `bodies` stands; 0: not known
   std::vector<std::pair<Index, std::vector<double>>> start;  ///< body → its entries of q, where the file gives a pose
   std::string file;                       ///< it was read from
   std::vector<std::string> mesh_path;
@@ -80,6 +82,17 @@ struct Robot {
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
 };
+
+/// A request of RobotOptions that the file cannot meet.
+struct RequestError : ModelError {
+  RequestError(const std::string& file, std::string of_key, std::string of_name, const std::string& problem, const std::string& accepted)
+      : ModelError(file, of_key + " of the scene", problem, accepted), key(std::move(of_key)), name(std::move(of_name)) {}
+  std::string key, name;  ///< of the scene's entry, and of its joint; "" when there is none
+};
+
+/// Every joint that the options name is among `moving`. `others`: joints of the file that do not move in the tree, and why.
+/// @throws RequestError naming the joint, and the one that was probably meant.
+void check_named_joints(const RobotOptions& options, const std::vector<std::string>& moving, const std::map<std::string, std::string>& others);
 
 /// Appends a robot to a model: its bodies, then the constraints that the file gives. The reader is chosen by the file's
 /// root element. @throws ModelError naming file, element (with line), value and what is accepted. Cost O(size of the file).

@@ -31,6 +31,7 @@ class SceneLoader {
 
   // scene_robots.cpp
   void read_robot(const Yaml& y);
+  [[nodiscard]] Robot read_file(const Yaml& y, const RobotOptions& options);
   void read_box(const Yaml& y);
   [[nodiscard]] std::string new_name(const Yaml& y);
   [[nodiscard]] RobotOptions robot_options(const Yaml& y, const std::string& name) const;

@@ -174,11 +174,29 @@ void SceneLoader::check_ranges(const Robot& robot, const Yaml& y) {
                            " without a given value outside the limits: " + outside + (count > 5 ? ", ..." : ""));
 }
 
+/// What is wrong with a robot's file, or with what is asked of it, and where the scene asks.
+Robot SceneLoader::read_file(const Yaml& y, const RobotOptions& options) {
+  const auto asked = [&](const ModelError& e, const Yaml& at) { return ModelError(std::string(e.what()) + ", read for " + at.file_and_line() + ": " + at.key()); };
+  try {
+    return add_robot(scene_.model, options);
+  } catch (const RequestError& e) {
+    if (options.file == path_) throw;  // without a scene
+    Yaml at = y.has(e.key.c_str()) ? y.at(e.key.c_str()) : y;
+    if (!e.name.empty() && at.is_map())
+      for (const auto& [name, value] : at.entries())
+        if (name == e.name) at = value;
+    throw asked(e, at);
+  } catch (const ModelError& e) {
+    if (options.file == path_) throw;
+    throw asked(e, y);
+  }
+}
+
 void SceneLoader::read_robot(const Yaml& y) {
   y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature", "mesh_path", "keyframe"});
   const RobotOptions options = robot_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
-  Robot robot = add_robot(scene_.model, options);
+  Robot robot = read_file(y, options);
   own_damping_.resize(own_damping_.size() + scene_.model.constraints.size() - before);
   const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
   grow_q();

@@ -8,8 +8,6 @@
 #include <mutex>
 #include <sstream>
 
-#include <tinyxml2.h>
-
 #include <sdf/sdf.hh>
 
 #include <Eigen/Geometry>
@@ -17,6 +15,8 @@
 #include "models/mesh.h"
 #include "models/message.h"
 #include "models/sdf_counts.h"
+#include "models/sdf_text.h"
+#include "models/xml_lines.h"
 
 namespace delassus {
 namespace {
@@ -71,58 +71,15 @@ class Listener {
   std::ostringstream text_;
 };
 
-/// Numbers of the file itself, read once more: the library takes the beginning of "2kg" for 2.
-void check_numbers(const std::string& file, const tinyxml2::XMLElement& root) {
-  static const char* const names[] = {"mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "pose", "xyz", "damping", "friction", "lower", "upper", "effort",
-                                      "velocity", "radius", "length", "size", "scale", "thread_pitch", "gearbox_ratio", "radii"};
-  std::vector<const tinyxml2::XMLElement*> stack{&root};
-  while (!stack.empty()) {
-    const tinyxml2::XMLElement* e = stack.back();
-    stack.pop_back();
-    const std::string name = e->Name();
-    if (name == "plugin" || name == "visual" || name == "sensor" || name == "gui" || name == "scene" || name == "light" || name == "actor" || name == "state") continue;
-    for (const tinyxml2::XMLElement* c = e->LastChildElement(); c; c = c->PreviousSiblingElement()) stack.push_back(c);
-    if (e->GetText() == nullptr || e->FirstChildElement() != nullptr) continue;
-    if (std::none_of(std::begin(names), std::end(names), [&](const char* n) { return name == n; })) continue;
-    std::istringstream words(e->GetText());
-    for (std::string word; words >> word;) {
-      const bool infinite = word == "inf" || word == "-inf" || word == "+inf" || word == "Inf" || word == "-Inf" || word == "INF" || word == "-INF";
-      const bool bound = name == "lower" || name == "upper" || name == "effort" || name == "velocity";
-      if (finite_number(word) || (bound && infinite)) continue;
-      throw ModelError(file, "<" + name + "> (line " + std::to_string(e->GetLineNum()) + ")", in_quotes(e->GetText()) + " is not finite",
-                       bound ? "a number, inf or -inf" : "finite numbers");
-    }
-  }
-}
-
-/// Elements without a part in M, J and contacts: what is wrong in them is nothing to refuse a file for.
-void leave_out(tinyxml2::XMLElement& root) {
-  static const char* const names[] = {"visual", "sensor", "plugin", "gui", "scene", "light", "actor", "physics", "atmosphere", "magnetic_field",
-                                      "spherical_coordinates", "wind", "audio", "audio_sink", "audio_source", "state", "road", "particle_emitter", "battery", "projector"};
-  std::vector<tinyxml2::XMLElement*> stack{&root};
-  while (!stack.empty()) {
-    tinyxml2::XMLElement* e = stack.back();
-    stack.pop_back();
-    for (tinyxml2::XMLElement* c = e->FirstChildElement(); c;) {
-      tinyxml2::XMLElement* const next = c->NextSiblingElement();
-      const std::string_view name = c->Name();
-      const bool no_friction = (name == "mu" || name == "mu2") && c->GetText() != nullptr && finite_number(c->GetText()).value_or(0) < 0;  // -1: not given
-      if (no_friction || std::any_of(std::begin(names), std::end(names), [&](const char* n) { return name == n; })) e->DeleteChild(c);
-      else stack.push_back(c);
-      c = next;
-    }
-  }
-}
-
 class SdfReader {
  public:
-  SdfReader(const RobotOptions& options, Findings& findings) : options_(options), findings_(findings) {}
+  SdfReader(const RobotOptions& options, Findings& findings) : options_(options), findings_(findings), lines_(options.file) {}
 
   SdfDocument run() {
     tinyxml2::XMLDocument document;
-    if (document.LoadFile(options_.file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) fail("file", "is no XML", "an SDF file");
-    check_numbers(options_.file, *document.RootElement());
-    leave_out(*document.RootElement());
+    if (document.LoadFile(options_.file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) fail("file", "is no XML", "an SDF file; correct what an XML checker says of it");
+    check_sdf_numbers(options_.file, *document.RootElement());
+    leave_out_of_sdf(*document.RootElement());
     check_counts(options_.file, *document.RootElement(), findings_);
     tinyxml2::XMLPrinter printer(nullptr, true);
     document.Print(&printer);
@@ -137,7 +94,7 @@ class SdfReader {
     for (uint64_t w = 0; w < root_.WorldCount(); ++w)
       for (uint64_t k = 0; k < root_.WorldByIndex(w)->ModelCount(); ++k) models.push_back(root_.WorldByIndex(w)->ModelByIndex(k));
     for (const sdf::Model* m : models) add_model(*m, {}, models.size() > 1 ? m->Name() + "::" : "", false);
-    if (out_.links.empty()) throw ModelError(options_.file, "<sdf>", "has no link", "a <model>, or a <world> with models");
+    if (out_.links.empty()) fail("<sdf> (line " + std::to_string(document.RootElement()->GetLineNum()) + ")", "has no link", "a <model>, or a <world> with models; give mesh_path: [folders] for models that it includes");
     return std::move(out_);
   }
 
@@ -168,7 +125,7 @@ class SdfReader {
         findings_.warn("include not found", options_.file, "<include>", e.Message(), "what it holds is not in the model; mesh_path: [folders] in the scene's robot entry says where models are");
       else if (fatal.size() < 1000) fatal += (fatal.empty() ? "" : "; ") + e.Message();
     }
-    if (!fatal.empty()) fail("<sdf>", "libsdformat: " + fatal, "an SDF file that libsdformat " + std::string(SDF_VERSION_FULL) + " reads");
+    if (!fatal.empty()) fail("<sdf>", "libsdformat: " + fatal, "an SDF file that libsdformat " + std::string(SDF_VERSION_FULL) + " reads; correct what it says, or give the robot as URDF");
   }
 
   /// The folder a model://name stands for, "" when there is none.
@@ -188,13 +145,13 @@ class SdfReader {
   template <class Semantic> Pose<double> resolve(const Semantic& s, const std::string& in, const std::string& element) const {
     ignition::math::Pose3d out;
     const sdf::Errors errors = s.Resolve(out, in);
-    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "a pose that can be resolved");
-    if (!out.IsFinite()) fail(element, "its pose is not finite", "finite numbers");
+    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "a pose that can be resolved; check relative_to");
+    if (!out.IsFinite()) fail(element, "its pose, (" + numbers_text(vector(out.Pos())) + ") m, is not finite", "finite numbers [m, rad]; correct <pose>");
     return pose_of(out);
   }
 
   void add_model(const sdf::Model& m, const Pose<double>& outer, const std::string& scope, bool fixed) {
-    const std::string element = "model " + in_quotes(m.Name());
+    const std::string element = lines_.element("model", m.Name());
     const Pose<double> X = outer * resolve(m.SemanticPose(), "", element);
     fixed = fixed || m.Static();
     for (uint64_t k = 0; k < m.LinkCount(); ++k) add_link(*m.LinkByIndex(k), X, scope, fixed);
@@ -205,7 +162,8 @@ class SdfReader {
   void add_link(const sdf::Link& l, const Pose<double>& model, const std::string& scope, bool fixed) {
     SdfDocument::Link out;
     out.name = scope + l.Name();
-    const std::string element = "link " + in_quotes(out.name);
+    out.line = lines_.line("link", out.name);
+    const std::string element = out.element = lines_.element("link", out.name);
     out.pose = model * resolve(l.SemanticPose(), "__model__", element);
     out.fixed = fixed;
     out.has_inertial = l.Element() != nullptr && l.Element()->HasElement("inertial");
@@ -237,7 +195,7 @@ class SdfReader {
     }
     const bool cylinder = s.kind == Shape::Kind::cylinder;
     const Index sizes = s.kind == Shape::Kind::box ? 3 : cylinder ? 2 : 1;
-    if (s.size.minCoeff() < 0) fail(element, "a size of " + number_text(2 * s.size.minCoeff()) + " m is negative", "lengths >= 0 [m]");
+    if (s.size.minCoeff() < 0) fail(element, "a size of " + number_text((s.kind == Shape::Kind::box || s.size[1] < 0 ? 2 : 1) * s.size.minCoeff()) + " m is negative", "lengths >= 0 [m]; leave the <collision> out where there is none");
     if (s.kind == Shape::Kind::capsule && s.size[1] == 0) s.kind = Shape::Kind::sphere;
     if (sizes > 1 && s.size.head(sizes).minCoeff() == 0)
       return findings_.warn("flat collision shape", options_.file, element, "a shape without volume is left out", "lengths > 0 [m]");
@@ -274,12 +232,12 @@ class SdfReader {
     using Type = SdfDocument::Type;
     SdfDocument::JointRow out;
     out.name = scope + j.Name();
-    const std::string element = "joint " + in_quotes(out.name);
+    const std::string element = out.element = lines_.element("joint", out.name);
     std::string parent, child;
     sdf::Errors errors = j.ResolveParentLink(parent);
     const sdf::Errors more = j.ResolveChildLink(child);
     errors.insert(errors.end(), more.begin(), more.end());
-    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "two links of this model, or world");
+    if (!errors.empty()) fail(element, "libsdformat: " + errors[0].Message(), "two links of this model, or world; correct <parent> and <child>");
     out.parent = parent == "world" ? parent : scope + parent;
     out.child = child == "world" ? child : scope + child;
     out.pose = model * resolve(j.SemanticPose(), "__model__", element);
@@ -293,7 +251,7 @@ class SdfReader {
       case sdf::JointType::REVOLUTE2: out.type = Type::revolute2; break;
       case sdf::JointType::SCREW: out.type = Type::screw; break;
       case sdf::JointType::UNIVERSAL: out.type = Type::universal; break;
-      case sdf::JointType::INVALID: fail(element, "its type is not known", "a joint type of SDF");
+      case sdf::JointType::INVALID: fail(element, "its type is not known", "a joint type of SDF: revolute, prismatic, fixed, ball, universal, ...; correct <joint type>");
     }
     for (unsigned k = 0; k < 2; ++k)
       if (j.Axis(k) != nullptr) out.axes.push_back(axis(*j.Axis(k), element));
@@ -307,9 +265,9 @@ class SdfReader {
     SdfDocument::Axis out;
     ignition::math::Vector3d v;
     const sdf::Errors errors = a.ResolveXyz(v);
-    if (!errors.empty()) fail(element + " <axis>", "libsdformat: " + errors[0].Message(), "an axis that can be resolved");
+    if (!errors.empty()) fail(element + " <axis>", "libsdformat: " + errors[0].Message(), "an axis that can be resolved; check expressed_in");
     out.direction = vector(v);
-    if (!out.direction.allFinite() || out.direction.norm() == 0) fail(element + " <axis>", "(" + numbers_text(out.direction) + ") is no direction", "a vector that is not 0");
+    if (!out.direction.allFinite() || out.direction.norm() == 0) fail(element + " <axis>", "(" + numbers_text(out.direction) + ") is no direction", "a vector that is not 0; give the axis, or take a fixed joint");
     out.direction.normalize();
     constexpr double unlimited = 1e16;  // SDF's own default of limits
     out.damping = a.Damping(), out.friction = a.Friction();
@@ -321,6 +279,7 @@ class SdfReader {
 
   const RobotOptions& options_;
   Findings& findings_;
+  XmlLines lines_;
   sdf::Root root_;
   SdfDocument out_;
 };
@@ -336,7 +295,7 @@ SdfDocument read_sdf(const RobotOptions& options, Findings& findings) { return S
 namespace delassus {
 
 SdfDocument read_sdf(const RobotOptions& options, Findings&) {
-  throw ModelError(options.file, "<sdf>", "this program was built without libsdformat, which reads SDF", "libsdformat-dev (version 12) when building; or the robot as URDF");
+  throw ModelError(options.file, "<sdf>", "an SDF file cannot be read: built without libsdformat", "URDF; or install libsdformat-dev (version 12) and build again");
 }
 
 }  // namespace delassus

@@ -11,6 +11,8 @@ namespace delassus {
 struct SdfDocument {
   struct Link {
     std::string name;               ///< `link`, in nested models `model::link`; of worlds with several models too
+    std::string element;            ///< `link "arm" (line 7)`
+    int line = 0;                   ///< 0: not known
     Pose<double> pose;              ///< in the world
     bool fixed = false;             ///< of a static model
     bool has_inertial = false;
@@ -28,6 +30,7 @@ struct SdfDocument {
   enum class Type : std::uint8_t { ball, continuous, fixed, gearbox, prismatic, revolute, revolute2, screw, universal };
   struct JointRow {
     std::string name, parent, child;  ///< parent: "world" for the world
+    std::string element;              ///< `joint "j" (line 9)`
     Type type = Type::revolute;
     Pose<double> pose;                ///< in the world
     std::vector<Axis> axes;

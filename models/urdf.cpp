@@ -4,9 +4,10 @@
 
 #include <Eigen/Geometry>
 
+#include "models/closest.h"
 #include "models/inertia_check.h"
 #include "models/message.h"
-#include "models/parts.h"
+#include "models/robot_bodies.h"
 #include "models/urdf_check.h"
 
 namespace delassus {
@@ -75,8 +76,7 @@ class Loader {
  public:
   Loader(Model& model, const RobotOptions& options)
       : model_(model), options_(options), findings_(options.strict), checked_(check_urdf(options.file, findings_)),
-        urdf_(read_by_urdfdom(checked_, findings_)) {
-    first_ = static_cast<Index>(model.bodies.size());
+        urdf_(read_by_urdfdom(checked_, findings_)), bodies_(model, options) {
     check_names();
   }
 
@@ -84,12 +84,9 @@ class Loader {
     out_.name = options_.robot;
     add_root();
     walk();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) sum_parts(parts_[i], bodies_[i]);
+    bodies_.sum();
     check_totals();
-    for (Body& b : bodies_) {
-      validate_body(b, options_.file);
-      out_.bodies.push_back(model_.add(std::move(b)));
-    }
+    bodies_.add_to(model_, out_);
     add_mimics();
     tally_.report(options_.file, findings_);
     out_.notes = std::move(findings_.notes);
@@ -103,49 +100,29 @@ class Loader {
   }
 
   void check_names() const {
-    auto check = [&](const std::string& key, const char* what) {
-      const auto it = urdf_->joints_.find(key);
-      if (it == urdf_->joints_.end()) fail(std::string(what) + " of the scene", "joint " + in_quotes(key) + " does not exist", "a joint of this file");
-      if (it->second->type == urdf::Joint::FIXED) fail(std::string(what) + " of the scene", "joint " + in_quotes(key) + " is fixed", "a moving joint");
-    };
-    for (const auto& [key, type] : options_.joint_types) check(key, "joint_types");
-    for (const auto& [key, value] : options_.armature) check(key, "armature");
+    std::vector<std::string> moving;
+    std::map<std::string, std::string> others;
+    for (const CheckedUrdf::JointRow& j : checked_.joints) {
+      if (j.fixed()) others.emplace(j.name, "is fixed");
+      else moving.push_back(j.name);
+    }
+    check_named_joints(options_, moving, others);
   }
 
   Index add_body(const std::string& link, Index parent, Joint joint) {
-    Body body;
-    body.name = options_.robot + "/" + link;
-    body.parent = parent;
-    body.joint = std::move(joint);
-    bodies_.push_back(std::move(body));
-    parts_.emplace_back();
-    expected_.emplace_back();
-    return first_ + static_cast<Index>(bodies_.size()) - 1;
+    expected_.emplace_back(bodies_.add(link, parent, std::move(joint), checked_.links.at(link).line), Moments{});
+    return expected_.back().first;
   }
 
   /// Puts a link into a body (or the ground): its frame, inertia and shapes.
   void place(const std::string& link, const Frame& frame) {
-    out_.links[link] = frame;
     const CheckedUrdf::Link& said = checked_.links.at(link);
-    if (frame.body == ground) {
-      if (!said.shapes.empty() || !said.meshes.empty()) tally_.add("fixed to the world, collision shapes left out", options_.robot + "/" + link);
-      return;
-    }
-    const auto k = static_cast<std::size_t>(frame.body - first_);
-    if (const auto& inertial = urdf_->links_.at(link)->inertial) {
-      judge_inertia(findings_, options_.file, said.inertial_place, said.inertial.mass, said.inertial.inertia);
-      parts_[k].push_back(part_of(*inertial, frame.placement));
-      expected_[k].add(said.inertial, frame.placement);
-    }
-    for (Shape s : said.shapes) {
-      s.placement = frame.placement * s.placement;
-      bodies_[k].shapes.push_back(s);
-    }
-    for (Robot::Mesh m : said.meshes) {
-      m.body = frame.body;
-      m.placement = frame.placement * m.placement;
-      out_.meshes.push_back(m);
-    }
+    bodies_.place(link, frame, said.shapes, said.meshes, out_, tally_);
+    const auto& inertial = urdf_->links_.at(link)->inertial;
+    if (frame.body == ground || !inertial) return;
+    judge_inertia(findings_, options_.file, said.inertial_place, said.inertial.mass, said.inertial.inertia);
+    bodies_.add_part(frame.body, part_of(*inertial, frame.placement));
+    expected_[static_cast<std::size_t>(frame.body - expected_.front().first)].second.add(said.inertial, frame.placement);
   }
 
   void add_root() {
@@ -210,7 +187,9 @@ class Loader {
       out.type = it->second.type;
       out.axis2 = it->second.axis2;
       if (out.type == JointType::universal && out.axis.cross(out.axis2).norm() == 0)
-        fail("joint_types of the scene", "axis2 of " + in_quotes(row.name) + " is parallel to its axis", "two different directions");
+        throw RequestError(options_.file, "joint_types", row.name,
+                           "axis2 of " + in_quotes(row.name) + ", (" + numbers_text(out.axis2) + "), is parallel to its axis, (" + numbers_text(out.axis) + ")",
+                           "two different directions; turn axis2");
     }
     const auto n = static_cast<std::size_t>(dof_count(out.type));
     const auto it = options_.armature.find(row.name);
@@ -228,12 +207,12 @@ class Loader {
   /// Mass, first and second moments of every body about its frame, from our own reading of the file.
   void check_totals() const {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const Body& b = bodies_[i];
-      const Moments &said = expected_[i], held = Moments::of(b.mass, b.com, b.inertia);
-      const double slack = 30 * 0x1p-53 * static_cast<double>(1 + 3 * parts_[i].size());
+      const Body& b = bodies_.bodies()[i];
+      const Moments &said = expected_[i].second, held = Moments::of(b.mass, b.com, b.inertia);
+      const double slack = 30 * 0x1p-53 * static_cast<double>(1 + 3 * bodies_.parts()[i].size());
       if (!b.com.allFinite() || !b.inertia.allFinite() || !std::isfinite(b.mass) || held.distance(said) <= slack) continue;  // not finite: validate_body
       fail("link " + in_quotes(b.name), "mass and moments about its frame: " + said.text() + " in the file, " + held.text() + " in the model",
-           "two that agree: please report this file");
+           "two that agree; please report this file");
     }
   }
 
@@ -247,11 +226,16 @@ class Loader {
                        "a moving joint of this file");
         continue;
       }
-      if (b == out_.joints.end()) fail(element, "joint " + in_quotes(row.master) + " does not exist", "a moving joint of this file");
-      if (a->second == b->second) fail(element, "a joint cannot follow " + in_quotes(row.master) + ", itself", "another moving joint");
+      if (b == out_.joints.end()) {
+        std::vector<std::string_view> names;
+        for (const auto& [joint, body] : out_.joints) names.push_back(joint);
+        fail(element, "joint " + in_quotes(row.master) + " does not exist", did_you_mean(row.master, names) + "a moving joint of this file; correct the name, or take the <mimic> out");
+      }
+      if (a->second == b->second) fail(element, "a joint cannot follow " + in_quotes(row.master) + ", itself", "another moving joint; name that one, or take the <mimic> out");
       for (const Index i : {a->second, b->second})
         if (dof_count(model_.bodies[static_cast<std::size_t>(i)].joint.type) != 1)
-          fail(element, "a joint with several degrees of freedom", "joints with one degree of freedom");
+          fail(element, "joint " + in_quotes(i == a->second ? row.name : row.master) + " has " + std::to_string(dof_count(model_.bodies[static_cast<std::size_t>(i)].joint.type)) + " degrees of freedom",
+               "joints with one degree of freedom; take the <mimic> out and give a coupling of the scene");
       out_.mimics.push_back({a->second, b->second, row.multiplier, row.offset});
       Constraint c;
       c.name = options_.robot + "/" + row.name + " mimic";
@@ -267,10 +251,8 @@ class Loader {
   Tally tally_;
   CheckedUrdf checked_;
   std::shared_ptr<urdf::ModelInterface> urdf_;
-  Index first_ = 0;
-  std::vector<Body> bodies_;
-  std::vector<std::vector<Part>> parts_;
-  std::vector<Moments> expected_;
+  RobotBodies bodies_;
+  std::vector<std::pair<Index, Moments>> expected_;  // per body of the robot
   Robot out_;
 };
 

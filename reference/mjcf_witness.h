@@ -5,7 +5,7 @@
 //          The three angular rows of a weld are a quaternion's error there; they are taken from mj_jac instead.
 // T        takes our ν to MuJoCo's qvel: identity but for free joints, which have the linear velocity first, in world axes.
 // Joints   are matched by their order: the k-th of MuJoCo moves the k-th body that is given.
-// Inertia  given as `fullinertia` is put in exactly: MuJoCo 2.2.2 finds principal axes to about 1e-7 only.
+// Inertia  given as `fullinertia` is put in exactly: MuJoCo 2.2.2 finds principal axes to 1e-6 only.
 #pragma once
 
 #include <map>

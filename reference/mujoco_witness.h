@@ -12,7 +12,7 @@
 //          that is open at q = 0, are set in the compiled model.
 // Switched off  balanceinertia, boundmass, boundinertia, settotalmass, inertiafromgeom, fusestatic, autolimits; gravity,
 //          contacts, limits, friction. Inertias are given as principal moments and axes, found here: MuJoCo 2.2.2 reads
-//          `fullinertia` too, but its own diagonalisation leaves a relative error of about 4e-7.
+//          `fullinertia` too, but its own diagonalisation leaves a relative error of up to 1e-6.
 // Not served  Massless bodies (MuJoCo refuses them) and armature that differs between the translations of a floating
 //          joint (it would turn with the body there).
 // Error    MuJoCo works in double from world positions: its own error counts once beside that of what it is compared
