@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 

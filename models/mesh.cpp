@@ -13,7 +13,7 @@
 #endif
 
 #include "models/hull.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "models/closest.h"
-#include "models/message.h"
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 namespace {

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "algorithms/regularity.h"
-#include "models/closest.h"
-#include "models/message.h"
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "models/mjcf.h"
 #include "models/sdf.h"
 #include "models/urdf.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

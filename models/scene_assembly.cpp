@@ -3,7 +3,7 @@
 #include <charconv>
 #include <set>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
 #include "models/yaml.h"

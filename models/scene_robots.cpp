@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "algorithms/status.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 namespace {

@@ -13,7 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "models/mesh.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/sdf_counts.h"
 #include "models/sdf_text.h"
 #include "models/xml_lines.h"

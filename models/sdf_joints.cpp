@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "models/contacts.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/sdf_builder.h"
 
 namespace delassus {

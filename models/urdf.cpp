@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 #include "models/inertia_check.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/robot_bodies.h"
 #include "models/urdf_check.h"
 

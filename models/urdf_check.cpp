@@ -4,7 +4,7 @@
 #include <set>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 namespace {

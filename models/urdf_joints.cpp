@@ -3,7 +3,7 @@
 #include <array>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

@@ -2,7 +2,7 @@
 #include <array>
 #include <sstream>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

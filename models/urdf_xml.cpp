@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/robot.h"
 
 namespace delassus {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "models/message.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 

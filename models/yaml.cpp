@@ -5,7 +5,7 @@
 #include <set>
 
 #include "algorithms/closest.h"
-#include "models/message.h"
+#include "algorithms/message.h"
 #include "models/robot.h"
 
 namespace delassus {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/closest.h"
+#include "algorithms/closest.h"
 
 namespace delassus {
 namespace {

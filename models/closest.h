@@ -1,4 +1,0 @@
-// Moved: algorithms/closest.h.
-#pragma once
-
-#include "algorithms/closest.h"

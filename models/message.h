@@ -1,4 +1,0 @@
-// Moved: algorithms/message.h.
-#pragma once
-
-#include "algorithms/message.h"
