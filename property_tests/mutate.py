@@ -46,11 +46,14 @@ FILES = {
 
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
-    **dict.fromkeys(["box_contacts.cpp", "contacts.cpp"], "BoxContacts ContactLaws SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["box_contacts.cpp", "contacts.cpp"], "BoxContacts ContactLaws HullContacts ZeroSize SceneLaws SceneFile Scenes"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
                     "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description"),
     **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
                      "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field SceneLaws Scenes"),
+    **dict.fromkeys(["sdf.cpp", "sdf_document.cpp"], "Sdf"), "scene_files.cpp": "SceneFile Scenes JointLimits Mjcf",
+    **dict.fromkeys(["mjcf.cpp", "mjcf_shapes.cpp", "mjcf_equalities.cpp", "mjcf_compile.cpp", "mjcf_xml.cpp", "mjcf_newer.cpp"], "Mjcf"),
+    **dict.fromkeys(["mesh.cpp", "hull.cpp"], "Hull Mesh"), "closest.h": "Names JointLimits",
     **dict.fromkeys(["kinematics.cpp", "mechanism.cpp", "mechanism_rows.cpp"], "kinematics moving integrate rows SceneLaws Description"), "constraints.cpp": "rows closure moving model SceneLaws",
     **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
     "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}

@@ -80,6 +80,28 @@ TEST(kinematics, free_body_has_the_constant_matrix_of_its_body_axes) {
   }
 }
 
+TEST(kinematics, every_degree_of_freedom_has_its_own_armature_and_limit) {
+  Random random(2);
+  Model m;
+  m.add(random_body(random, "a", ground, JointType::revolute));
+  m.add(random_body(random, "b", 0, JointType::planar));
+  m.add(random_body(random, "c", 1, JointType::universal));
+  m.bodies[0].joint.armature = {};
+  m.bodies[1].joint.armature = {1, 2, 3};
+  m.bodies[2].joint.armature = {4, 5};
+  for (const auto& [body, dof, side] : {std::tuple<Index, Index, int>{1, 2, 1}, {1, 0, -1}, {2, 1, -1}, {0, 0, 1}}) {
+    Constraint c;
+    c.kind = Kind::joint_limit;
+    c.a.body = body, c.dof = dof, c.side = side;
+    m.constraints.push_back(c);
+  }
+  const Problem<double> p = kinematics<double>(m, random_configuration(m, random));
+  EXPECT_EQ(p.armature, (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  MatrixX<double> J = MatrixX<double>::Zero(4, 6);
+  J(0, 3) = 1, J(1, 1) = -1, J(2, 5) = -1, J(3, 0) = 1;
+  EXPECT_EQ(constraint_jacobian(p), J);
+}
+
 /// Every kind whose rows no world position enters, on two_robots: within one tree, between trees, to the world.
 void add_constraints(Model& m, Random& random, bool far) {
   for (const Kind k : {Kind::point, Kind::weld, Kind::hinge, Kind::universal, Kind::cylindrical, Kind::prismatic,

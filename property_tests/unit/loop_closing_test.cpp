@@ -3,80 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <functional>
-#include <sstream>
 
 #include "algorithms/kinematics.h"
-#include "models/scene.h"
+#include "property_tests/unit/four_bars.h"
 #include "property_tests/unit/path_sums.h"
-#include "property_tests/unit/temporary.h"
 
 namespace delassus {
 namespace {
 
+using namespace four_bars;
 using unit::ratio;
-using Kind = Constraint::Kind;
-
-std::string write(const std::string& name, const std::string& text) {
-  const auto file = test::temporary(name);
-  std::ofstream(file) << text;
-  return file.string();
-}
-
-std::string link(const std::string& name) {
-  return "<link name=\"" + name + "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"0.1\"/></inertial></link>\n";
-}
-
-struct JointText {
-  std::string name, parent, child, origin = "xyz=\"0 0 0\"", more = {}, limits = "lower=\"-9\" upper=\"9\"", type = "revolute", axis = "0 -1 0";
-};
-
-std::string joint(const JointText& j) {
-  return "<joint name=\"" + j.name + "\" type=\"" + j.type + "\"><origin " + j.origin + "/><parent link=\"" + j.parent + "\"/><child link=\"" + j.child +
-         "\"/><axis xyz=\"" + j.axis + "\"/><limit " + j.limits + " effort=\"1\" velocity=\"1\"/>" + j.more + "</joint>\n";
-}
-
-/// Crank 0.3 and coupler 0.8 on one side, rocker 0.6 on the other, pivots 1 m apart in the x z plane; angles from x to z.
-/// f2 turns beside them.
-std::string four_bar(const std::string& file, const JointText& j2 = {}, const JointText& j3 = {}, const std::string& j4_more = "") {
-  JointText two = j2, three = j3;
-  two.name = "j2", two.parent = "crank", two.child = "coupler", two.origin = "xyz=\"0.3 0 0\"" + (j2.origin[0] == 'r' ? " " + j2.origin : std::string());
-  three.name = "j3", three.parent = "base", three.child = "rocker", three.origin = "xyz=\"1 0 0\"" + (j3.origin[0] == 'r' ? " " + j3.origin : std::string());
-  return write(file, "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + link("base") + link("crank") + link("coupler") + link("rocker") + link("f2") +
-                         joint({"j1", "base", "crank"}) + joint(two) + joint(three) + joint({"j4", "base", "f2", "xyz=\"2 0 0\"", j4_more}) + "</robot>\n");
-}
-
-const std::string point_loop = "  - {kind: point, of: r/coupler, at: [0.8, 0, 0], to: r/rocker, to_at: [0.6, 0, 0]}\n";
-const std::string hinge_loop =
-    "  - {kind: hinge, of: r/coupler, at: [0.8, 0, 0], axes: {z: [0, 1, 0]}, to: r/rocker, to_at: [0.6, 0, 0], to_axes: {z: [0, 1, 0]}}\n";
-
-Scene scene_of(const std::string& urdf, const std::string& joints, const std::string& constraints, const std::string& more = "") {
-  return load_scene(write("loop_closing.yaml", "robots:\n  - {name: r, urdf: " + urdf + ", base: fixed, joints: {" + joints + "}}\nconstraints:\n" + constraints + more));
-}
-
-bool has_warning(const Scene& s, const std::string& kind) {
-  return std::any_of(s.warnings.begin(), s.warnings.end(), [&](const Warning& w) { return w.kind == kind; });
-}
-
-bool has_note(const Scene& s, const std::string& part) {
-  return std::any_of(s.notes.begin(), s.notes.end(), [&](const std::string& n) { return n.find(part) != std::string::npos; });
-}
-
-std::string refusal(const std::function<void()>& load) {
-  try {
-    load();
-  } catch (const ModelError& e) {
-    return e.what();
-  }
-  return "";
-}
-
-void expect_refused(const std::function<void()>& load, const std::vector<std::string>& parts) {
-  const std::string text = refusal(load);
-  EXPECT_NE(text, "") << "not refused";
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-}
 
 /// Coupler and rocker angles for a crank angle: the crossing of two circles above the ground.
 void solve_four_bar(double crank, double& j2, double& j3) {
@@ -202,20 +138,14 @@ std::string across(bool arms) {
   return write("across.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + link("base") + link("one") + link("two") + joint(a) + joint(b) + "</robot>\n");
 }
 
-std::string text(double x) {
-  std::ostringstream s;
-  s.precision(17);
-  s << x;
-  return s.str();
-}
-
 Scene gap(double g, const std::string& own = "", const std::string& more = "", bool arms = false) {
   const std::string at = arms ? "at: [10, 0, 0]" : "at: [0, 0, 0]", to = arms ? "to_at: [10, 0, " : "to_at: [0.5, 0, ";
   return scene_of(across(arms), "a: 0.1", "  - {kind: point, of: r/one, " + at + ", to: r/two, " + to + text(g) + "]" + own + "}\n", more);
 }
 
-Scene tilt(double angle) {
-  return scene_of(across(false), "a: 0.1", "  - {kind: hinge, of: r/one, at: [0, 0, 0], rpy: [" + text(angle) + ", 0, 0], to: r/two, to_at: [0, 0, 0], to_rpy: [0, 0, 0]}\n");
+Scene tilt(double angle, bool arms = false) {
+  const std::string at = arms ? "[10, 0, 0]" : "[0, 0, 0]";
+  return scene_of(across(arms), "a: 0.1", "  - {kind: hinge, of: r/one, at: " + at + ", rpy: [" + text(angle) + ", 0, 0], to: r/two, to_at: " + at + ", to_rpy: [0, 0, 0]}\n");
 }
 
 /// Half a limit is accepted with the gap stated, twice the limit is refused with it.
@@ -229,7 +159,7 @@ void expect_limit(double limit, const std::function<Scene(double)>& load) {
 // Fails when accepted_gap is a million times wider, when a lever arm is left out, and when one tolerance is taken for the other.
 TEST(Assembly, tolerances_at_half_and_twice_the_limit) {
   expect_limit(1e-4, [](double g) { return gap(g); });
-  expect_limit(1e-4, tilt);
+  for (const bool arms : {false, true}) expect_limit(1e-4, [arms](double angle) { return tilt(angle, arms); });  // angles have no arm
   expect_limit(1e-3, [](double g) { return gap(g, "", "", true); });  // arms of 10 m
   expect_limit(1e-6, [](double g) { return gap(g, ", tolerance: 1e-6"); });
   expect_limit(1e-2, [](double g) { return gap(g, "", "assembly: {tolerance: 0.01}\n"); });
@@ -293,39 +223,6 @@ TEST(Assembly, whole_robots_and_boxes_are_held) {
   expect_refused([&] { (void)load_scene(write("held.yaml", text_of + "hold: [a, b]\n")); }, {"held.yaml:5", "open by 1 m"});
   expect_refused([&] { (void)load_scene(write("held.yaml", text_of + "hold: [c]\n")); }, {"held.yaml:6", "\"c\""});
   expect_refused([&] { (void)load_scene(write("held.yaml", text_of + "assembly: {tolerance: -1}\n")); }, {"held.yaml:6", "negative"});
-}
-
-TEST(JointLimits, are_rows_of_their_side) {
-  JointText two, three;
-  two.limits = "lower=\"-1\" upper=\"2\"", three.limits = "lower=\"-1\" upper=\"2\"";
-  const std::string urdf = four_bar("limit_rows.urdf", two, three);
-  const auto rows = [&](const std::string& c) { return unit::constraint_jacobian(problem_of(scene_of(urdf, "j1: 0.5", c))); };
-  MatrixX<double> expected = MatrixX<double>::Zero(2, 4);
-  expected(0, 2) = 1, expected(1, 1) = -1;
-  EXPECT_EQ(rows("  - {kind: joint_limit, joint: r/j3, side: lower}\n  - {kind: joint_limit, joint: r/j2, side: upper}\n"), expected);
-  MatrixX<double> all(8, 4), lower = MatrixX<double>::Identity(4, 4);
-  for (Index k = 0; k < 4; ++k) all.row(2 * k) = lower.row(k), all.row(2 * k + 1) = -lower.row(k);
-  EXPECT_EQ(rows("  - {kind: joint_limit, robot: r}\n"), all);
-  EXPECT_EQ(rows("  - {kind: joint_limit, robot: r, side: lower}\n"), lower);
-  EXPECT_EQ(rows("  - {kind: joint_limit, robot: r, side: upper}\n"), -lower);
-  const Scene s = scene_of(urdf, "j1: 0.5", "  - {kind: joint_limit, joint: r/j3}\n");
-  EXPECT_EQ(s.model.constraints[0].name, "joint_limit r/j3 lower");
-  EXPECT_EQ(s.model.constraints[1].name, "joint_limit r/j3 upper");
-  expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/j3, side: left}\n"); }, {":4", "left", "lower, upper"});
-  expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/j3, dof: 1}\n"); }, {":4", "1 degree"});
-  expect_refused([&] { (void)rows("  - {kind: joint_limit, joint: r/none}\n"); }, {":4", "r/none"});
-  expect_refused([&] { (void)rows("  - {kind: joint_limt, joint: r/j3}\n"); }, {":4", "joint_limt", "did you mean joint_limit?"});
-  expect_refused([&] { (void)rows("  - {kind: joint_lock, joint: r/3j}\n"); }, {":4", "did you mean r/j3?"});
-  expect_refused([&] { (void)rows("  - {kind: point, of: r/cupler, to: world}\n"); }, {":4", "did you mean r/coupler?"});
-  expect_refused([&] { (void)scene_of(urdf, "j11: 0.5", "  - {kind: joint_limit, robot: r}\n"); }, {":2", "did you mean j1?"});
-  expect_refused([&] { (void)scene_of(urdf, "j1: 0.5", "  - {kind: joint_limit, robt: r}\n"); }, {":4", "did you mean robot?"});
-  expect_refused([&] { (void)open_scene("casie"); }, {"did you mean cassie?"});
-  EXPECT_EQ(refusal([&] { (void)rows("  - {kind: point, of: gripper, to: world}\n"); }).find("did you mean"), std::string::npos);
-  JointText endless;
-  endless.type = "continuous", endless.limits = "";
-  const std::string free = four_bar("limit_free.urdf", endless);
-  expect_refused([&] { (void)scene_of(free, "j1: 0.5", "  - {kind: joint_limit, joint: r/j2}\n"); }, {":4", "no such limit"});
-  EXPECT_EQ(scene_of(free, "j1: 0.5", "  - {kind: joint_limit, robot: r}\n").damping.diagonal.size(), 6u);
 }
 
 }  // namespace
