@@ -1,5 +1,8 @@
 #include "algorithms/dense_cholesky.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "algorithms/ldlt.h"
 
 namespace delassus {
@@ -56,7 +59,8 @@ template <class T> Report DenseCholesky<T>::do_update(const Problem<T>& problem,
   assemble_M(problem);
   assemble_J(problem);
   const Index lost = ldlt_factor(M_.data(), n, n);  // M = L D Lᵀ
-  factored_M_ = lost < 0 ? Report{} : Report{Status::lost_pivot, n - 1 - lost};
+  const auto& first = this->structure()->first_dof;
+  factored_M_ = lost < 0 ? Report{} : Report{Status::lost_pivot, *std::prev(std::upper_bound(first.begin(), first.end(), n - 1 - lost))};
   if (!factored_M_.ok()) return factored_M_;
   for (Index c = 0; c < m; ++c) {
     T* const y = Y_.data() + c * n;

@@ -2,7 +2,7 @@
 //
 // What     A = J M⁻¹ Jᵀ + R⁻¹ as a dense matrix; apply is a product, solve an LDLᵀ substitution.
 // Formula  M = L D Lᵀ;  Y = L⁻¹ Jᵀ;  A = Yᵀ D⁻¹ Y + R⁻¹ = L_A D_A L_Aᵀ
-// Singular M: lost_pivot at a degree of freedom. A (redundant rows at zero damping): lost_pivot at a row, on solve only.
+// Singular M: lost_pivot at a joint's first degree of freedom. A (redundant rows at zero damping): lost_pivot at a row, on solve only.
 // How      M by composite inertias along paths to the root, J by paths, square-root-free Cholesky (ldlt.h). M leaf first: its zeros
 //          between branches stay exact zeros in L. Root first they fill up, and a body at the ground ties its branches together
 //          by what rounding leaves there.
