@@ -2,11 +2,11 @@
 #include "algorithms/loop_closing.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "algorithms/constraints.h"
 #include "algorithms/loop_newton.h"
+#include "algorithms/message.h"
 
 namespace delassus {
 namespace {
@@ -14,10 +14,6 @@ namespace {
 using Vector = VectorX<double>;
 
 constexpr double unit = unit_roundoff<double>;
-std::string number(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
 
 /// Lengths that the linear errors of a constraint are differences of [m], at least the 1 of its angles [rad].
 double size_of(const Constraint& c, const Poses<double>& at) {
@@ -164,7 +160,7 @@ std::vector<Move> moves_of(const Model& model, const Vector& from, const Vector&
 
 std::string told(const Model& model, const Gap& g) {
   const Constraint& c = model.constraints[g.constraint];
-  return (c.name.empty() ? std::string(name(c.kind)) : c.name) + " by " + number(g.after) + (g.angle ? " rad" : " m");
+  return (c.name.empty() ? std::string(name(c.kind)) : c.name) + " by " + number_text(g.after) + (g.angle ? " rad" : " m");
 }
 
 }  // namespace
@@ -209,9 +205,9 @@ OpenLoops open_loops(const Model& model, const Assembly& a) {
     if (g.open() && &g != out.worst) others += (others.empty() ? "; also open: " : ", ") + told(model, g);
   const Gap& w = *out.worst;
   const std::string unit_of = w.angle ? " rad" : " m";
-  out.problem = "the loop cannot be closed from this pose: open by " + number(w.after) + unit_of + " after " + std::to_string(a.steps) +
-                " steps of assembly, by " + number(w.before) + " before" + others;
-  out.accepted = "at most " + number(w.accepted) + unit_of;
+  out.problem = "the loop cannot be closed from this pose: open by " + number_text(w.after) + unit_of + " after " + std::to_string(a.steps) +
+                " steps of assembly, by " + number_text(w.before) + " before" + others;
+  out.accepted = "at most " + number_text(w.accepted) + unit_of;
   return out;
 }
 
@@ -220,7 +216,8 @@ Assembly assemble(const Model& model, const VectorX<double>& q, const std::strin
   const OpenLoops open = open_loops(model, a);
   if (open.worst == nullptr) return a;
   const Constraint& c = model.constraints[open.worst->constraint];
-  throw ModelError(file, std::string(name(c.kind)) + " constraint" + (c.name.empty() ? "" : " " + c.name), open.problem, open.accepted);
+  throw ModelError(file, std::string(name(c.kind)) + " constraint" + (c.name.empty() ? "" : " " + c.name), open.problem,
+                   open.accepted + "; start nearer to a closed pose, hold fewer joints, or give the constraint a tolerance");
 }
 
 }  // namespace delassus

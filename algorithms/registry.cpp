@@ -1,12 +1,14 @@
 // The table of operators. A row added here is tested, benchmarked, listed and documented.
 #include "algorithms/aba_sweep.h"
 #include "algorithms/cg.h"
+#include "algorithms/closest.h"
 #include "algorithms/dense_cholesky.h"
 #include "algorithms/kkt_elimination.h"
 #include "algorithms/ladder.h"
 #include "algorithms/lcaba.h"
 #include "algorithms/lcaba_qr.h"
 #include "algorithms/lcaba_refined.h"
+#include "algorithms/message.h"
 #include "algorithms/proximal.h"
 
 namespace delassus {
@@ -106,12 +108,9 @@ const std::vector<OperatorRow>& operators() {
 }
 
 const OperatorRow& find_operator(std::string_view wanted) {
-  std::string accepted;
-  for (const OperatorRow& row : operators()) {
+  for (const OperatorRow& row : operators())
     if (row.name == wanted) return row;
-    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw ModelError("", "operator", "unknown name '" + std::string(wanted.substr(0, 80)) + "'", accepted);
+  throw ModelError("", "operator", "there is no operator " + in_quotes(wanted), accepted_names(wanted, operators()) + "; `delassus list operators` says what each does");
 }
 
 }  // namespace delassus

@@ -3,22 +3,17 @@
 #include "algorithms/regularity.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
 
 #include "algorithms/kinematics.h"
+#include "algorithms/message.h"
 #include "algorithms/scalars.h"
 
 namespace delassus {
 namespace {
-
-std::string text(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
 
 /// What a body's own spatial inertia is.
 enum class Kind : std::uint8_t { massless, semidefinite, indefinite, definite };
@@ -111,20 +106,20 @@ VectorX<double> perturbed(const Model& model, double turn) {
 
 std::string described(const Own& own, const Body& body) {
   if (own.kind == Kind::massless) return "massless body";
-  if (own.moments.isZero(0)) return "point mass of " + text(body.mass) + " kg";
-  return "body of " + text(body.mass) + " kg with the principal moments (" + text(own.moments[0]) + " " + text(own.moments[1]) + " " +
-         text(own.moments[2]) + ") kg m^2";
+  if (own.moments.isZero(0)) return "point mass of " + number_text(body.mass) + " kg";
+  return "body of " + number_text(body.mass) + " kg with the principal moments (" + number_text(own.moments[0]) + " " + number_text(own.moments[1]) + " " +
+         number_text(own.moments[2]) + ") kg m^2";
 }
 
 [[noreturn]] void refuse(const Model& model, const std::vector<Own>& own, const Lost& lost, const std::string& file) {
   const auto i = static_cast<std::size_t>(lost.body);
   const Body& body = model.bodies[i];
   const std::string joint = body.joint.name.empty() ? "" : " (joint " + body.joint.name + ")";
-  const std::string pivot = "its pivot of M is " + text(lost.pivot) + " of " + text(lost.whole) + " kg m^2 or kg";
+  const std::string pivot = "its pivot of M is " + number_text(lost.pivot) + " of " + number_text(lost.whole) + " kg m^2 or kg";
   const std::string accepted = "armature above 0 on every degree of freedom";
   if (!lost.negative)
     throw ModelError(file, body.name, described(own[i], body) + " whose joint" + joint + " moves no inertia of its descendants: M is singular, " + pivot,
-                     "an inertia above 0 about every axis, massive descendants that its joint moves, or " + accepted);
+                     "an inertia above 0 about every axis, massive descendants that its joint moves, or " + accepted + "; give the body an inertia, or the joint an armature");
   std::size_t culprit = i;
   for (std::size_t k = model.bodies.size(); k-- > i;) {
     Index up = static_cast<Index>(k);
@@ -133,7 +128,7 @@ std::string described(const Own& own, const Body& body) {
   }
   throw ModelError(file, model.bodies[culprit].name,
                    described(own[culprit], model.bodies[culprit]) + ": M is indefinite, at " + body.name + joint + " " + pivot,
-                   "principal moments of 0 or more, or " + accepted);
+                   "principal moments of 0 or more, or " + accepted + "; check the signs of the products of inertia and the axes they are in");
 }
 
 /// What a number of M can come to: Σ m ℓ² + |I| over all bodies, ℓ the length of the path to the centre of mass.
@@ -149,8 +144,8 @@ void check_range(const Model& model, const std::string& file) {
     sum += static_cast<long double>(body.mass) * arm * arm + static_cast<long double>(body.inertia.cwiseAbs().maxCoeff());
     if (sum > most || reach.back() > most)
       throw ModelError(file, body.name,
-                       "mass " + text(body.mass) + " kg at " + text(static_cast<double>(std::min(arm, most))) + " m, largest moment " +
-                           text(body.inertia.cwiseAbs().maxCoeff()) + " kg m^2: M leaves the range of double",
+                       "mass " + number_text(body.mass) + " kg at " + number_text(static_cast<double>(std::min(arm, most))) + " m, largest moment " +
+                           number_text(body.inertia.cwiseAbs().maxCoeff()) + " kg m^2: M leaves the range of double",
                        "m l^2 and moments below 1e300 kg m^2; check the units of mass, inertia and origins");
   }
 }
@@ -171,7 +166,7 @@ void check_regular(const Model& model, const std::string& file) {
     if (own[i].kind == Kind::definite || (own[i].kind != Kind::indefinite && has_armature(body.joint))) continue;
     if (own[i].kind == Kind::massless && tip[i])
       throw ModelError(file, body.name, "massless tip without armature" + (body.joint.name.empty() ? "" : ", on joint " + body.joint.name),
-                       "mass above 0 kg, or armature above 0 [kg m^2 or kg] on every degree of freedom of its joint");
+                       "mass above 0 kg, or armature above 0 [kg m^2 or kg] on every degree of freedom of its joint; give one of them, or fix the joint");
     doubtful = true;
   }
   if (!doubtful) return;

@@ -5,7 +5,9 @@
 #include <limits>
 #include <set>
 
+#include "algorithms/closest.h"
 #include "algorithms/lcaba_refined.h"
+#include "algorithms/message.h"
 #include "bench/stopwatch.h"
 #include "bench/text.h"
 #include "reference/kkt_cholmod.h"
@@ -158,10 +160,8 @@ std::vector<Rung> rungs(const std::vector<std::string>& names) {
   if (names.empty()) return all;
   std::vector<Rung> chosen;
   for (const std::string& wanted : names) {
-    std::string accepted;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Rung& r) { return r.name == wanted; });
-    for (const Rung& r : all) accepted += (accepted.empty() ? "'" : ", '") + r.name + "'";
-    if (found == all.end()) throw ModelError("", "--op", "'" + wanted + "' is no rung", accepted);
+    if (found == all.end()) throw ModelError("", "--op", "there is no rung " + in_quotes(wanted), accepted_names(wanted, all) + "; quote names that hold blanks");
     chosen.push_back(*found);
   }
   return chosen;

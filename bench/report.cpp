@@ -90,7 +90,7 @@ AccuracyResult accuracy_of(const ReportOptions& options, const Progress& progres
 void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
-  if (!file.flush()) throw ModelError(path.string(), "file", "cannot be written", "a directory with write permission");
+  if (!file.flush()) throw ModelError(path.string(), "file", "cannot be written", "a directory with write permission; choose another --out");
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ Results run_report(const ReportOptions& options, const Progress& progress) {
 void write_report(const Results& results, const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  if (error) throw ModelError(directory.string(), "directory", error.message(), "a directory that can be made and written");
+  if (error) throw ModelError(directory.string(), "directory", error.message(), "a directory that can be made and written; choose another --out");
   write_file(directory / "index.html", page(results));
   write_file(directory / "results.json", nlohmann::json(results).dump(1) + "\n");
 }

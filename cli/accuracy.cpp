@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "algorithms/message.h"
 #include "bench/accuracy_campaign.h"
 #include "bench/accuracy_digest.h"
 #include "bench/plot.h"
@@ -110,10 +111,10 @@ void print(const Table& t) {
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
-  if (text.empty()) throw ModelError(path.string(), "plot", "needs gnuplot, which cannot be run", "gnuplot installed");
+  if (text.empty()) throw ModelError(path.string(), "plot", "needs gnuplot, which cannot be run", "a machine with gnuplot; install gnuplot, or leave --out away");
   std::filesystem::create_directories(path.parent_path());
   if (!(std::ofstream(path) << text << std::flush))
-    throw ModelError(path.string(), "file", "cannot be written", "a directory with write permission");
+    throw ModelError(path.string(), "file", "cannot be written", "a directory with write permission; choose another --out");
 }
 
 void write_pictures(const Table& t, const std::filesystem::path& out) {
@@ -203,13 +204,11 @@ int all(const Options& o) {
 
 int run_accuracy(const Options& o) {
   if (o.all != o.subjects.empty())
-    throw ModelError("", "accuracy", o.all ? "--all and a subject are given" : "no subject is given", "scenes and families, or --all");
+    throw ModelError("", "accuracy", o.all ? "--all and a subject are given" : "no subject is given", "scenes and families, or --all; give one of the two");
   for (const double d : o.dampings)
     if (!(std::isfinite(d) && (d > 0 || (o.steps && d == 0))))
-      throw ModelError("", "--damping", format("%g 1/kg", d), "a finite number above 0 [1/kg], with --steps also 0");
-  if (o.all && o.steps) throw ModelError("", "accuracy", "--all and --steps are given", "--steps with subjects");
-  for (const double away : o.away)
-    if (!std::isfinite(away)) throw ModelError("", "--away", format("%g m", away), "a finite number [m]");
+      throw ModelError("", "--damping", number_text(d) + " 1/kg", "a finite number above 0 [1/kg]; with --steps also 0");
+  if (o.all && o.steps) throw ModelError("", "accuracy", "--all and --steps are given", "--steps with subjects; leave one of the two away");
   static_cast<void>(rungs({o.claim}));  // throws, listing the names
   return o.all ? all(o) : o.steps ? steps(o) : some(o);
 }
@@ -224,7 +223,7 @@ void add_accuracy(options::Command& app, Run& run) {
   c->add_option("--seed", o->seed, "of families and of the right-hand side")->check(options::whole(0))->capture_default_str();
   c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2")->check(options::at_least(0, "1/kg"));
   c->add_option("--op", o->ops, "only these rungs");
-  c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->capture_default_str();
+  c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->check(options::any_number("m"))->capture_default_str();
   c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(options::one_of({"consistent", "random"}))->capture_default_str();
   c->add_option("--claim", o->claim, "the rung the claim is about")->capture_default_str();
   c->add_option("--out", o->out, "directory for the pictures (SVG)");

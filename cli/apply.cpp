@@ -1,6 +1,5 @@
 // `delassus apply SCENE --op NAME [--solve]`: one operator on one vector.
 #include <cstdio>
-#include <cstdlib>
 
 #include "bench/accuracy.h"
 #include "bench/text.h"
@@ -25,7 +24,7 @@ void require_capability(const OperatorRow& row, bool solve) {
   std::string able;
   for (const OperatorRow& o : operators())
     if (solve ? o.solves : o.applies) able += (able.empty() ? "" : ", ") + std::string(o.name);
-  throw ModelError("", "--op " + std::string(row.name), solve ? "it has no solve" : "it has no apply (use --solve)", able);
+  throw ModelError("", "--op " + std::string(row.name), solve ? "it has no solve" : "it has no apply", able + (solve ? "; leave --solve out" : "; --solve asks for the other function"));
 }
 
 struct Answer {
@@ -133,11 +132,7 @@ void add_apply(options::Command& app, Run& run) {
   c->add_flag("--solve", o->solve, "f = A⁻¹ a instead of a = A f");
   c->add_option("--accuracy", o->accuracy,
                 "with --solve: bound wanted on the relative error in the energy norm; 0: all digits; inf: no certificate")
-      ->check([](const std::string& text) {
-        char* end = nullptr;
-        const double x = std::strtod(text.c_str(), &end);
-        return !text.empty() && *end == 0 && x >= 0 ? std::string() : "'" + text + "' is not a number ≥ 0 (accepted: 0 … inf)";
-      });
+      ->check(options::at_least_or_inf(0, ""));
   options::Option* input = c->add_option("--input", o->input, "JSON file with an array of one number per row; when left out, see --rhs");
   c->add_option("--rhs", o->rhs, "without --input: ones; consistent: A times ones, which dependent hard rows do not contradict")
       ->check(options::one_of({"ones", "consistent"}))->excludes(input)->capture_default_str();

@@ -57,10 +57,10 @@ void print_scene(const json& s) {
 
 json read_baseline(const std::string& file) {
   std::ifstream stream(file);
-  const std::string accepted = "a file written by `delassus bench --json` or the results.json of a report";
+  const std::string accepted = "the results.json of a report, or what `delassus bench --json` prints; write one of them first";
   if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
   json j = json::parse(stream, nullptr, false);
-  if (j.is_discarded() || !j.is_object() || !j.contains("scenes")) throw ModelError(file, "JSON", "has no `scenes`", accepted);
+  if (j.is_discarded() || !j.is_object() || !j.contains("scenes")) throw ModelError(file, "JSON", j.is_discarded() ? "is broken, or holds a number beyond double" : "has no `scenes`", accepted);
   return j["scenes"];
 }
 

@@ -98,7 +98,7 @@ void print_cases(const std::vector<laws::Case>& all) {
 
 int check(const Options& o) {
   if (!o.family.empty() && !o.scene.empty())
-    throw ModelError("", "check", "both --family and --scene are given", "one of them, or none for every family");
+    throw ModelError("", "check", "both --family and --scene are given", "one of them, or none; without either every family is checked");
   const auto ops = chosen_operators(o.ops, o.defect);
   const std::string_view left_out = o.defect.empty() ? "" : laws::left_out(laws::find_defect(o.defect));
   json warnings;
@@ -127,7 +127,7 @@ int check(const Options& o) {
 }
 
 int digits_of(const Options& o) {
-  if (o.ops.size() > 1) throw ModelError("", "--op", "is given more than once with --digits", "aba_sweep or lcaba");
+  if (o.ops.size() > 1) throw ModelError("", "--op", "is given more than once with --digits", "one of aba_sweep, lcaba; run it twice for both");
   return check_digits({o.scene, o.family, o.n, o.seed, o.damping, o.ops.empty() ? "lcaba" : o.ops.front(), o.picture, o.as_json, o.opening});
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "algorithms/message.h"
 #include "bench/digits_picture.h"
 #include "bench/plot.h"
 #include "bench/text.h"
@@ -32,7 +33,7 @@ struct Subject {
   std::vector<std::string> bodies, joints, rows;
 };
 
-const char* const no_damping = "a finite number above 0 [1/kg]; 0 is accepted by aba_sweep";
+const char* const no_damping = "a finite number above 0 [1/kg]; --op aba_sweep takes 0";
 
 Subject subject(const DigitsOptions& o) {
   Subject s;
@@ -188,8 +189,8 @@ void write_picture(const Subject& s, const DigitsOptions& o, const digits::Measu
     panels[2].digits.push_back(std::min(l.forward, l.acceleration));
   }
   const std::string svg = s.scene ? bench::digits_picture(*s.scene, panels, "Digits kept: " + s.label) : link_plot(s, m);
-  if (svg.empty()) throw ModelError("", "--picture", "the plot needs gnuplot, which cannot be run", "a scene, or gnuplot installed");
-  if (!(std::ofstream(o.picture) << svg << std::flush)) throw ModelError(o.picture, "file", "cannot be written", "a path to write an SVG to");
+  if (svg.empty()) throw ModelError("", "--picture", "the plot needs gnuplot, which cannot be run", "a scene, or gnuplot; install gnuplot, or give a scene");
+  if (!(std::ofstream(o.picture) << svg << std::flush)) throw ModelError(o.picture, "file", "cannot be written", "a path to write an SVG to; make its folder first");
   if (!o.as_json) std::printf("%s: %s\n", o.picture.c_str(), s.scene ? "the scene after the factor and after each sweep" : "digits against link (a family has no geometry)");
 }
 
@@ -197,10 +198,10 @@ void write_picture(const Subject& s, const DigitsOptions& o, const digits::Measu
 
 int check_digits(const DigitsOptions& o) {
   if (o.scene.empty() == o.family.empty())
-    throw ModelError("", "check --digits", o.scene.empty() ? "no scene and no family is given" : "a scene and a family are given", "one of them");
-  if (o.op != "aba_sweep" && o.op != "lcaba") throw ModelError("", "--op", "'" + o.op + "' cannot be measured", "aba_sweep or lcaba");
+    throw ModelError("", "check --digits", o.scene.empty() ? "no scene and no family is given" : "a scene and a family are given", "one of them; `delassus list scenes` and `list families` have the names");
+  if (o.op != "aba_sweep" && o.op != "lcaba") throw ModelError("", "--op", "'" + o.op + "' cannot be measured", "aba_sweep, lcaba; leave --op away for lcaba");
   if (o.damping && !(std::isfinite(*o.damping) && *o.damping >= 0))
-    throw ModelError("", "--damping", format("%g 1/kg", *o.damping), no_damping);
+    throw ModelError("", "--damping", number_text(*o.damping) + " 1/kg", no_damping);
   const Subject s = subject(o);
   const digits::Measured m = measured(s, o);
   const Report refused = in_double(s, o);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "algorithms/message.h"
 #include "property_tests/defects.h"
 #include "property_tests/options.h"
 
@@ -50,7 +51,7 @@ Scene open(const std::string& name, const SceneOptions& options, const std::opti
   print_warnings(scene.warnings);
   if (!damping) return scene;
   if (!(std::isfinite(*damping) && *damping >= 0))
-    throw ModelError("", "--damping", json(*damping).dump() + " 1/kg", "a finite number ≥ 0 [1/kg]");
+    throw ModelError("", "--damping", number_text(*damping) + " 1/kg", "a finite number ≥ 0 [1/kg]; leave it away for the scene's own");
   scene.damping = Damping<double>::uniform(static_cast<Index>(scene.damping.diagonal.size()), *damping);
   return scene;
 }
@@ -128,7 +129,7 @@ struct Position : nlohmann::json_sax<json> {
 }  // namespace
 
 VectorX<double> read_vector(const std::string& file, Index size, const std::string& meaning) {
-  const std::string accepted = "a JSON array of " + std::to_string(size) + " finite numbers, " + meaning;
+  const std::string accepted = "a JSON array of " + std::to_string(size) + " finite numbers, " + meaning + "; `delassus describe` counts the rows";
   std::ifstream stream(file);
   if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

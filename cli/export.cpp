@@ -74,7 +74,7 @@ int export_scene(const std::string& name, const SceneOptions& opening, const std
   }
   std::ofstream out(file);
   out << text << '\n';
-  if (!out.flush()) throw ModelError(file, "file", "cannot be written", "a path with write permission");
+  if (!out.flush()) throw ModelError(file, "file", "cannot be written", "a path with write permission; make its folder first, or leave --out away");
   return good;
 }
 

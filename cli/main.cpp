@@ -8,6 +8,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "algorithms/status.h"
 #include "cli/commands.h"
 #include "property_tests/allocations.h"
@@ -54,7 +56,7 @@ int main(int argc, char** argv) {
   for (auto* add : {add_list, add_describe, add_check, add_apply, add_export, add_bench, add_accuracy, add_report, add_stress, add_survey, add_replay}) add(app, run);
   const std::vector<std::string> known = app.subcommands();
   if (argc > 1 && argv[1][0] != '-' && std::find(known.begin(), known.end(), argv[1]) == known.end())
-    return fail("there is no subcommand " + std::string(argv[1]) + " (accepted: " + listed(known) + ")", bad_input);
+    return fail("there is no subcommand " + delassus::in_quotes(argv[1]) + " (accepted: " + delassus::did_you_mean(argv[1], known) + listed(known) + "; --help says what each does)", bad_input);
   std::string error;
   if (const std::optional<int> exit = app.parse(argc, argv, error)) return *exit == 0 ? good : fail(error, bad_input);
   try {

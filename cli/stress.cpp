@@ -1,4 +1,5 @@
 // `delassus stress`: a randomised search for broken laws, alone or in shards under a launcher; reports merged.
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -24,22 +25,6 @@ struct Options {
   bool as_json = false;
 };
 
-/// "90", "90s", "2m" or "1h" in seconds.
-double seconds_of(const std::string& text) {
-  std::size_t end = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = std::string::npos;
-  }
-  const std::string unit = end == std::string::npos ? "?" : text.substr(end);
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (factor == 0 || !(value > 0) || !std::isfinite(value))
-    throw ModelError("command line", "--time", "is " + text, "a positive number of seconds, or one with s, m or h: 60, 60s, 10m, 2h");
-  return factor * value;
-}
-
 struct Shard {
   int number = 1, of = 1;
   std::string from;   ///< what said so; empty: nothing
@@ -47,8 +32,9 @@ struct Shard {
 
 /// A whole non-negative number, or −1.
 int whole(const std::string& text) {
-  if (text.empty() || text.size() > 8 || text.find_first_not_of("0123456789") != std::string::npos) return -1;
-  return std::stoi(text);
+  int n = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  return error == std::errc() && end == text.data() + text.size() && n >= 0 ? n : -1;
 }
 
 int variable(const char* name) {
@@ -69,7 +55,7 @@ Shard shard_of(const std::string& text) {
   if (!text.empty()) {
     const std::size_t slash = text.find('/');
     const int i = whole(text.substr(0, slash)), n = slash == std::string::npos ? -1 : whole(text.substr(slash + 1));
-    if (i < 1 || i > n) throw ModelError("command line", "--shard", "is " + text, "i/n with 1 ≤ i ≤ n");
+    if (i < 1 || i > n) throw ModelError("", "--shard", "is '" + text + "'", "i/n with 1 ≤ i ≤ n; 1/4 is the first of four");
     return {i, n, "--shard"};
   }
   for (const auto& launcher : launchers) {
@@ -89,12 +75,12 @@ laws::Search search_of(const Options& o) {
   laws::Search s;
   const Shard shard = shard_of(o.shard);
   if (shard.of > 1 && !o.seed)
-    throw ModelError("command line", "--seed", "is missing for shard " + std::to_string(shard.number) + "/" +
-                     std::to_string(shard.of) + " (" + shard.from + ")", "the same seed for every shard");
+    throw ModelError("", "--seed", "is missing for shard " + std::to_string(shard.number) + "/" +
+                     std::to_string(shard.of) + " (" + shard.from + ")", "one seed for all shards; give --seed with the same number to each");
   s.seed = o.seed ? *o.seed : fresh_seed();
   s.shard = shard.number;
   s.shards = shard.of;
-  s.seconds = seconds_of(o.time);
+  s.seconds = options::seconds_of(o.time);
   s.count = o.count;
   s.most_failures = o.failures;
   s.ops.clear();
@@ -170,7 +156,7 @@ int merge(const Options& o) {
   std::vector<laws::Found> shards;
   for (const std::string& file : o.merge) {
     const json j = json::parse(read_text(file), nullptr, false);
-    if (j.is_discarded()) throw ModelError(file, "document", "is not JSON", "a report written by `stress --report`");
+    if (j.is_discarded()) throw ModelError(file, "document", "is not JSON, or holds a number beyond double", "a report written by `stress --report`; write it again");
     shards.push_back(read_found(j, file));
   }
   return conclude(laws::merged(shards), o);
@@ -191,7 +177,7 @@ int stress(const Options& o) {
 void add_stress(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("stress", "randomised search for broken laws");
   auto o = std::make_shared<Options>();
-  c->add_option("--time", o->time, "how long: 60 or 60s, 10m, 2h")->capture_default_str();
+  c->add_option("--time", o->time, "how long: 60 or 60s, 10m, 2h")->check(options::duration())->capture_default_str();
   c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(options::whole(1));
   c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed")->check(options::whole(0));
   c->add_option("--shard", o->shard, "i/n: problems i, i + n, …; when left out, rank and size set by the launcher");

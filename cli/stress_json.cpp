@@ -14,11 +14,11 @@ namespace {
 
 /// An element of a JSON object, or a ModelError that names it.
 template <class T> T get(const json& j, const char* key, const std::string& file, const char* accepted) {
-  if (!j.is_object() || !j.contains(key)) throw ModelError(file, key, "is missing", accepted);
+  if (!j.is_object() || !j.contains(key)) throw ModelError(file, key, "is missing", std::string(accepted) + "; a file as `delassus stress` writes it");
   try {
     return j[key].get<T>();
   } catch (const json::exception&) {
-    throw ModelError(file, key, "is " + j[key].dump(), accepted);
+    throw ModelError(file, key, "is " + j[key].dump(), std::string(accepted) + "; a file as `delassus stress` writes it");
   }
 }
 
@@ -31,14 +31,14 @@ std::string read_text(const std::string& file) {
   std::ifstream in(file);
   std::ostringstream all;
   if (in) all << in.rdbuf();
-  if (!in) throw ModelError(file, "file", "cannot be read", "a readable file");
+  if (!in) throw ModelError(file, "file", "cannot be read", "a readable file; check the path");
   return all.str();
 }
 
 void write_text(const std::string& file, const std::string& content) {
   std::ofstream out(file);
   out << content << '\n';
-  if (!out.flush()) throw ModelError(file, "file", "cannot be written", "a path in an existing, writable folder");
+  if (!out.flush()) throw ModelError(file, "file", "cannot be written", "a path in an existing, writable folder; make the folder first");
 }
 
 json failure_json(const laws::Failure& f) {

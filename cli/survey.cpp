@@ -33,7 +33,7 @@ std::atomic<bool> stopped{false};
 std::vector<std::string> files_under(const std::string& folder) {
   std::error_code error;
   if (fs::is_regular_file(folder, error)) return {folder};
-  if (!fs::is_directory(folder, error)) throw ModelError("", "survey", "'" + folder + "' is no folder", "a folder with robots (.urdf, .sdf, MJCF .xml), or one such file");
+  if (!fs::is_directory(folder, error)) throw ModelError("", "survey", "'" + folder + "' is no folder", "a folder with robots (.urdf, .sdf, MJCF .xml), or one such file; check the path");
   std::vector<std::string> out;
   for (auto it = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error); it != fs::end(it); it.increment(error)) {
     if (error) break;
@@ -78,10 +78,9 @@ struct Totals {
   int files = 0, loads = 0, warned = 0, refused = 0, failed = 0;   ///< loads without warning, with; failed: crash or time limit
   int articulated = 0, fixed_only = 0, differ = 0;
   int right = 0, look = 0;              ///< refusals that are right, that need a look
-  int compared = 0, rows = 0;           ///< files held against a second reading; rows of J in them
   int readable = 0, readable_load = 0;  ///< articulated, read by urdfdom, M regular by the witness; and of these loaded
   std::map<std::string, double> worst;
-  std::map<std::string, Kind> warnings, refusals, right_because, not_compared;
+  std::map<std::string, Kind> warnings, refusals, right_because;
 
   void add(const json& j) {
     ++files;
@@ -101,8 +100,6 @@ struct Totals {
     std::map<std::string, int> here;
     for (const json& w : j["warnings"]) ++here[w["kind"]];
     for (const auto& [kind, count] : here) warnings[kind].add(file, count);
-    if (j.contains("not_compared")) not_compared[j["not_compared"]].add(file);
-    if (j.contains("rows")) ++compared, rows += j["rows"].get<int>();
     if (!j.contains("ratios")) return;
     for (const auto& [name, r] : j["ratios"].items()) worst[name] = std::max(worst[name], r.is_number() ? r.get<double>() : HUGE_VAL);
   }
@@ -118,9 +115,9 @@ json totals_json(const Totals& t) {
   json worst = json::object();
   for (const auto& [name, r] : t.worst) worst[name] = std::isfinite(r) ? json(r) : json("infinity");
   return {{"files", t.files}, {"articulated", t.articulated}, {"loads", t.loads}, {"loads_with_warnings", t.warned}, {"refused", t.refused},
-          {"refused_rightly", t.right}, {"refused_needs_a_look", t.look}, {"failed", t.failed}, {"differ", t.differ}, {"compared", t.compared}, {"rows", t.rows},
+          {"refused_rightly", t.right}, {"refused_needs_a_look", t.look}, {"failed", t.failed}, {"differ", t.differ},
           {"fixed_base_only", t.fixed_only}, {"readable", t.readable}, {"readable_load", t.readable_load}, {"worst_ratios", worst},
-          {"warnings", kinds_json(t.warnings)}, {"refusals", kinds_json(t.refusals)}, {"right_because", kinds_json(t.right_because)}, {"not_compared", kinds_json(t.not_compared)}};
+          {"warnings", kinds_json(t.warnings)}, {"refusals", kinds_json(t.refusals)}};
 }
 
 void print_kinds(const char* title, const std::map<std::string, Kind>& kinds) {
@@ -166,7 +163,6 @@ void print_totals(const Totals& t, bool compared) {
     if (compared) std::printf("  %s %s", name.c_str(), bench::ratio_text(r).c_str());
   std::printf("\n%d files, %d with moving joints: %d load, %d load with warnings, %d refused (%d rightly, %d need a look), %d failed, %d differ\n", t.files,
               t.articulated, t.loads, t.warned, t.refused, t.right, t.look, t.failed, t.differ);
-  if (compared) std::printf("%d held against a second reading, %d rows of J\n", t.compared, t.rows);
   if (t.fixed_only > 0) std::printf("%d load on a fixed base only\n", t.fixed_only);
   if (t.readable > 0)
     std::printf("with moving joints, read by urdfdom, M regular: %d of %d load (%.1f %%)\n", t.readable_load, t.readable, 100.0 * t.readable_load / t.readable);
@@ -174,7 +170,7 @@ void print_totals(const Totals& t, bool compared) {
 
 int survey(const Options& o) {
   const std::vector<std::string> files = files_under(o.folder);
-  if (files.empty()) throw ModelError("", "survey", "'" + o.folder + "' holds no robot", "files .urdf, .sdf or MJCF .xml in it or below");
+  if (files.empty()) throw ModelError("", "survey", "'" + o.folder + "' holds no robot", "files .urdf, .sdf or MJCF .xml in it or below; expand .xacro files first");
   std::fprintf(stderr, "%zu files\n", files.size());
   std::signal(SIGINT, [](int) { stopped = true; });
   json all = json::array();
@@ -193,8 +189,6 @@ int survey(const Options& o) {
     print_rows(all, o.all);
     print_kinds("warnings by kind", totals.warnings);
     print_kinds("refusals by kind", totals.refusals);
-    print_kinds("refused rightly: why", totals.right_because);
-    print_kinds("load, without a second reading", totals.not_compared);
     print_totals(totals, o.file.poses > 0);
   }
   return totals.differ > 0 ? law_broken : good;

@@ -11,7 +11,7 @@ namespace {
 using namespace detail;
 
 [[noreturn]] void reject(const std::string& element, const std::string& problem, const std::string& accepted) {
-  throw ModelError("spec", element, problem, accepted);
+  throw ModelError("spec", element, problem, accepted + "; specs are written by `delassus stress`");
 }
 
 std::vector<Place> places(const Spec& spec) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "algorithms/status.h"
 #include "generators/draft.h"
 #include "generators/families_hard.h"
@@ -314,12 +316,9 @@ const std::vector<FamilyRow>& families() {
 }
 
 const FamilyRow& find_family(std::string_view name) {
-  std::string accepted;
-  for (const FamilyRow& row : families()) {
+  for (const FamilyRow& row : families())
     if (row.name == name) return row;
-    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw ModelError("command line", "family", "there is no family " + std::string(name), accepted);
+  throw ModelError("", "family", "there is no family " + in_quotes(name), accepted_names(name, families()) + "; `delassus list families` says what each is");
 }
 
 }  // namespace delassus::generators

@@ -251,7 +251,7 @@ Spec micrometre(Index n, std::uint64_t seed) { return scaled("swimmer", "microme
 Spec kilometre(Index n, std::uint64_t seed) { return scaled("swimmer", "kilometre", n, seed, 3, 12); }
 /// Here n is the decade: 10^307 kg is the largest mass there is, 10^-320 kg about the smallest.
 int decade(Index n, Index most) {
-  if (n < 0 || n > most) throw ModelError("", "n", "10^±" + std::to_string(n) + " kg is no number in double", "0 to " + std::to_string(most));
+  if (n < 0 || n > most) throw ModelError("", "n", "10^±" + std::to_string(n) + " kg is no number in double", "0 to " + std::to_string(most) + "; n is the power of ten here");
   return static_cast<int>(n);
 }
 Spec tiny_numbers(Index n, std::uint64_t seed) { return scaled("swimmer", "tiny_numbers", 3, seed, 0, -decade(n, 320)); }

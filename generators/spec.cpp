@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algorithms/closest.h"
 #include "algorithms/status.h"
 
 namespace delassus::generators {
@@ -62,7 +63,7 @@ class Reader {
     }
   }
   [[noreturn]] void fail(const std::string& problem, const std::string& accepted) const {
-    throw ModelError(file_, element_, problem, accepted);
+    throw ModelError(file_, element_, problem, accepted + "; specs are written by `delassus stress`");
   }
 
   json object_;
@@ -153,8 +154,9 @@ void check_keys(const json& said, const json& written, const std::string& file, 
   for (const auto& [key, value] : said.items()) {
     if (!written.contains(key)) {
       std::string accepted;
-      for (const auto& [known, ignored] : written.items()) accepted += (accepted.empty() ? "" : ", ") + known;
-      throw ModelError(file, element, "has the unknown key \"" + key + "\"", accepted);
+      std::vector<std::string> names;
+      for (const auto& [known, ignored] : written.items()) names.push_back(known), accepted.append(accepted.empty() ? "" : ", ").append(known);
+      throw ModelError(file, element, "has the unknown key \"" + key + "\"", did_you_mean(key, names) + accepted + "; take it out");
     }
     check_keys(value, written[key], file, element + "." + key);
   }
@@ -196,7 +198,7 @@ namespace {
   } catch (const json::exception& e) {
     why += std::string(": ") + e.what();
   }
-  throw ModelError(file, "document", why, "one JSON object, numbers in the range of double");
+  throw ModelError(file, "document", why, "one JSON object, numbers in the range of double; write it as `delassus stress` does");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ Constraint contact(Index body, double x, const Pose<double>& link) {
 }  // namespace
 
 Scene swimmer(Index links) {
-  if (links < 1) throw ModelError("scene", "swimmer:" + std::to_string(links), "has no links", "N >= 1");
+  if (links < 1) throw ModelError("", "scene swimmer:" + std::to_string(links), "has no links", "N >= 1; swimmer:10 has ten links");
   Scene s;
   s.name = "swimmer:" + std::to_string(links);
   s.note = "Planar chain; the number of links is the size.";

@@ -55,7 +55,7 @@ urdf::ModelInterfaceSharedPtr parse(const CheckedUrdf& checked, Findings& findin
     listener.errors.push_back(e.what());
   }
   if (!model || !listener.errors.empty())
-    throw ModelError(checked.file, "robot", "urdfdom: " + (listener.errors.empty() ? "gives no model" : first_of(listener.errors)), "a URDF 1.0 robot");
+    throw ModelError(checked.file, "robot", "urdfdom: " + (listener.errors.empty() ? "gives no model" : first_of(listener.errors)), "a URDF 1.0 robot; correct what urdfdom names");
   for (const std::string& text : listener.warnings) findings.warn("urdfdom", checked.file, "robot", "urdfdom: " + text, "a URDF 1.0 robot");
   for (auto& [name, link] : model->links_) {  // the tree's own pointers would be released by a recursion as deep as the robot
     link->child_links.clear();
@@ -71,7 +71,7 @@ class Same {
 
   [[noreturn]] void fail(const std::string& what, const std::string& theirs, const std::string& ours) const {
     throw ModelError(file_, place_, what + " is read as " + theirs + " by urdfdom, the file says " + ours,
-                     "two readings that agree: please report this file");
+                     "two readings that agree; please report this file");
   }
   void equal(const char* what, double theirs, double ours) const {
     if (theirs != ours) fail(what, number_text(theirs), number_text(ours));
@@ -133,12 +133,12 @@ std::shared_ptr<urdf::ModelInterface> read_by_urdfdom(const CheckedUrdf& checked
   const auto model = parse(checked, findings);
   for (const auto& [name, link] : checked.links) {
     const auto it = model->links_.find(name);
-    if (it == model->links_.end() || !it->second) throw ModelError(checked.file, "link " + in_quotes(name), "is dropped by urdfdom", "a URDF 1.0 robot");
+    if (it == model->links_.end() || !it->second) throw ModelError(checked.file, "link " + in_quotes(name) + " (line " + std::to_string(link.line) + ")", "is dropped by urdfdom", "a URDF 1.0 robot; please report this file");
     compare_link(checked.file, name, link, *it->second);
   }
   for (const CheckedUrdf::JointRow& row : checked.joints) {
     const auto it = model->joints_.find(row.name);
-    if (it == model->joints_.end() || !it->second) throw ModelError(checked.file, row.place, "is dropped by urdfdom", "a URDF 1.0 robot");
+    if (it == model->joints_.end() || !it->second) throw ModelError(checked.file, row.place, "is dropped by urdfdom", "a URDF 1.0 robot; please report this file");
     compare_joint(checked.file, row, *it->second);
   }
   return model;

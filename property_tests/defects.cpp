@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "property_tests/defects_wrong.h"
 
 namespace delassus::laws {
@@ -20,12 +22,9 @@ const std::vector<DefectRow>& defects() {
 }
 
 const DefectRow& find_defect(std::string_view name) {
-  std::string accepted;
-  for (const DefectRow& row : defects()) {
+  for (const DefectRow& row : defects())
     if (row.name == name) return row;
-    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw ModelError("command line", "defect", "there is no defect " + std::string(name), accepted);
+  throw ModelError("", "defect", "there is no defect " + in_quotes(name), accepted_names(name, defects()) + "; `delassus list defects` says what each is");
 }
 
 std::string_view left_out(const DefectRow& defect) { return defect.allocates ? "no allocation" : ""; }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
 #include "generators/build.h"
 #include "property_tests/laws_conduct.h"
 #include "property_tests/laws_groups.h"
@@ -131,12 +133,9 @@ const std::vector<LawRow>& laws() {
 }
 
 const LawRow& find_law(std::string_view name) {
-  std::string accepted;
-  for (const LawRow& row : laws()) {
+  for (const LawRow& row : laws())
     if (row.name == name) return row;
-    accepted += (accepted.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw ModelError("command line", "law", "there is no law " + std::string(name), accepted);
+  throw ModelError("", "law", "there is no law " + in_quotes(name), accepted_names(name, laws()) + "; `delassus list laws` says what each is");
 }
 
 Case make_case(Problem<double> problem, Damping<double> damping, std::string label, std::uint64_t seed, bool exact) {

@@ -1,5 +1,6 @@
 #include "property_tests/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <deque>
@@ -8,13 +9,21 @@
 
 #include <CLI/CLI.hpp>
 
+#include "algorithms/closest.h"
+#include "algorithms/message.h"
+
 namespace delassus::options {
 namespace {
 
-/// The number that all of the text is; false: it is none.
+/// The whole number that all of the text is; false: it is none.
 template <class T> bool read(const std::string& text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+/// Numbers as files have them, less the blanks around.
+std::optional<double> number(const std::string& text) {
+  return text.find_first_of(" \t\r\n") == std::string::npos ? finite_number(text) : std::nullopt;
 }
 
 /// Refuses what `good` does not take, in the words of ModelError.
@@ -22,14 +31,33 @@ Check accepts(const std::string& what, const std::function<bool(const std::strin
   return [=](const std::string& text) { return good(text) ? std::string() : "is '" + text + "' (accepted: " + what + ")"; };
 }
 
-Check finite(const std::string& relation, double least, const std::string& unit, bool equal_too) {
-  char number[32];
-  const auto end = std::to_chars(number, number + sizeof number, least).ptr;
-  const std::string what = "a finite number " + relation + " " + std::string(number, end) + (unit.empty() ? "" : " [" + unit + "]");
-  return accepts(what, [=](const std::string& text) {
-    double x = 0;
-    return read(text, x) && std::isfinite(x) && (x > least || (equal_too && x == least));
-  });
+/// What to do about a text that is refused.
+std::string advice(const std::string& text) { return number(text) ? "leave the option away for its default" : not_a_number(text).advice; }
+
+Check finite(const std::string& relation, double least, const std::string& unit, bool equal_too, bool infinite_too = false) {
+  const std::string what = std::string(infinite_too ? "" : "finite ") + "number " + relation + " " + number_text(least) + (unit.empty() ? "" : " [" + unit + "]") +
+                           (infinite_too ? ", or inf" : "");
+  return [=](const std::string& text) {
+    if (infinite_too && text == "inf") return std::string();
+    const auto x = number(text);
+    if (x && (*x > least || (equal_too && *x == least))) return std::string();
+    return "is '" + text + "' (accepted: a " + what + "; " + advice(text) + ")";
+  };
+}
+
+/// ` (did you mean --damping?)` of the first option left over, by those of the subcommand that was given.
+std::string meant(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  std::vector<std::string> names;
+  for (const CLI::Option* option : last->get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* at : {last, &app})
+    for (const std::string& word : at->remaining()) {
+      const std::string answer = did_you_mean(word.substr(0, word.find('=')), names);
+      if (!answer.empty()) return " (" + answer.substr(0, answer.size() - 1) + ")";
+    }
+  return {};
 }
 
 CLI::Option& of(void* option) { return *static_cast<CLI::Option*>(option); }
@@ -38,10 +66,31 @@ CLI::Option& of(void* option) { return *static_cast<CLI::Option*>(option); }
 
 Check at_least(double least, const std::string& unit) { return finite("≥", least, unit, true); }
 
+Check any_number(const std::string& unit) {
+  return [=](const std::string& text) {
+    return number(text) ? std::string() : "is '" + text + "' (accepted: a finite number [" + unit + "]; " + advice(text) + ")";
+  };
+}
+
+Check at_least_or_inf(double least, const std::string& unit) { return finite("≥", least, unit, true, true); }
+
 Check above(double least, const std::string& unit) { return finite(">", least, unit, false); }
 
+double seconds_of(const std::string& text) {
+  constexpr std::string_view units = "smh";
+  const std::size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
+  const bool has_unit = unit != std::string_view::npos;
+  const auto x = number(has_unit ? text.substr(0, text.size() - 1) : text);
+  const double seconds = x ? *x * (unit == 1 ? 60 : unit == 2 ? 3600 : 1) : 0;
+  return seconds > 0 && std::isfinite(seconds) ? seconds : std::nan("");
+}
+
+Check duration() {
+  return accepts("a number of seconds > 0, or one with s, m or h behind it; 60, 60s, 10m, 2h", [](const std::string& text) { return !std::isnan(seconds_of(text)); });
+}
+
 Check whole(std::int64_t least) {
-  return accepts("a whole number from " + std::to_string(least) + " to 2⁶³ − 1", [=](const std::string& text) {
+  return accepts("a whole number from " + std::to_string(least) + " to 2⁶³ − 1; write digits alone", [=](const std::string& text) {
     std::int64_t n = 0;
     return read(text, n) && n >= least;
   });
@@ -50,15 +99,18 @@ Check whole(std::int64_t least) {
 Check one_of(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& w : words) all += (all.empty() ? "" : ", ") + w;
-  return accepts(all, [=](const std::string& text) { return std::find(words.begin(), words.end(), text) != words.end(); });
+  return [=](const std::string& text) {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+    return "is '" + text + "' (accepted: " + did_you_mean(text, words) + all + "; write one of these words)";
+  };
 }
 
 Check existing_file() {
-  return accepts("an existing file", [](const std::string& text) { std::error_code e; return std::filesystem::is_regular_file(text, e); });
+  return accepts("an existing file; check the path", [](const std::string& text) { std::error_code e; return std::filesystem::is_regular_file(text, e); });
 }
 
 Check existing_directory() {
-  return accepts("an existing directory", [](const std::string& text) { std::error_code e; return std::filesystem::is_directory(text, e); });
+  return accepts("an existing directory; make it first", [](const std::string& text) { std::error_code e; return std::filesystem::is_directory(text, e); });
 }
 
 Option* Option::check(const Check& good) {
@@ -140,6 +192,9 @@ std::optional<int> Command::parse(int argc, char** argv, std::string& error) {
     return std::nullopt;
   } catch (const CLI::Success& e) {
     return parts_->app->exit(e);  // --help
+  } catch (const CLI::ExtrasError& e) {
+    error = e.what() + meant(*parts_->app) + "\nRun with --help for what is accepted.";
+    return 2;
   } catch (const CLI::ParseError& e) {
     error = std::string(e.what()) + "\nRun with --help for what is accepted.";
     return 2;
@@ -152,7 +207,7 @@ void add_shard(Command& app, Shard& shard) {
     Shard s;
     const bool numbers = slash != std::string::npos && read(text.substr(0, slash), s.number) && read(text.substr(slash + 1), s.of);
     if (!numbers || s.number < 1 || s.number > s.of)
-      throw std::invalid_argument("is '" + text + "' (accepted: i/n with 1 ≤ i ≤ n)");
+      throw std::invalid_argument("is '" + text + "' (accepted: i/n with 1 ≤ i ≤ n; 1/4 is the first of four)");
     shard = s;
   };
   app.add_option_function("--shard", take, "i/n: every n-th, from the i-th on");

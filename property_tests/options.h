@@ -21,7 +21,15 @@ using Check = std::function<std::string(const std::string& text)>;
 
 /// A finite number ≥ `least`, or > `least`. `unit` is empty for a ratio.
 [[nodiscard]] Check at_least(double least, const std::string& unit);
+/// Any finite number.
+[[nodiscard]] Check any_number(const std::string& unit);
+/// At least `least`, or inf.
+[[nodiscard]] Check at_least_or_inf(double least, const std::string& unit);
 [[nodiscard]] Check above(double least, const std::string& unit);
+/// A number above 0 of seconds, or one with s, m or h behind it: 60, 60s, 10m, 2h.
+[[nodiscard]] Check duration();
+/// What such a text is in seconds, NaN for any other.
+[[nodiscard]] double seconds_of(const std::string& text);
 /// A whole number from `least` to 2⁶³ − 1.
 [[nodiscard]] Check whole(std::int64_t least);
 [[nodiscard]] Check one_of(const std::vector<std::string>& words);

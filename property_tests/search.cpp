@@ -114,7 +114,7 @@ Found search(const Search& s) {
 }
 
 Found merged(const std::vector<Found>& shards) {
-  const std::string accepted = "one report per shard of one search, each once";
+  const std::string accepted = "one report per shard of one search, each once; name them all";
   if (shards.empty()) throw ModelError("merge", "reports", "there is none", accepted);
   Found all = shards[0];
   std::set<int> seen;

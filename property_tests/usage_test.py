@@ -1,9 +1,11 @@
-"""Command lines that cannot be right: exit code 2, and a message that names the option, the value and what is accepted.
+"""Command lines that cannot be right: exit code 2, and a message that names the option, the value, what is accepted and what
+to do.
 
 usage_test.py BUILD_DIR
 """
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,11 +21,21 @@ def run(*command):
 
 
 def refused(command, *words):
-    """Exit code 2, nothing on standard output, every word in the message."""
+    """Exit code 2, nothing on standard output, every word in the message, and `(accepted: what; what to do)`."""
+    done = run(*command)
+    missing = [word for word in words if word not in done.stderr]
+    if not re.search(r"\(accepted: .+; .+\)", done.stderr, re.DOTALL):
+        missing.append("(accepted: what; what to do)")
+    if done.returncode != 2 or done.stdout or missing:
+        failures.append(f"{' '.join(map(str, command[1:]))}: exit code {done.returncode}, without {missing}: {done.stderr}{done.stdout[:200]}")
+
+
+def misspelt(command, *words):
+    """A word that the parser of command lines does not know."""
     done = run(*command)
     missing = [word for word in words if word not in done.stderr]
     if done.returncode != 2 or done.stdout or missing:
-        failures.append(f"{' '.join(map(str, command[1:]))}: exit code {done.returncode}, without {missing}: {done.stderr}{done.stdout[:200]}")
+        failures.append(f"{' '.join(map(str, command[1:]))}: exit code {done.returncode}, without {missing}: {done.stderr}")
 
 
 def printed(command, *words, code=0):
@@ -40,16 +52,35 @@ for x in ["abc", "-1", "inf", "nan", "1e-8kg"]:
     refused([delassus, "check", "cassie", "--digits", "--damping", x], "--damping", f"'{x}'", "a finite number ≥ 0 [1/kg]")
 refused([delassus, "check", "--family", "huge_numbers", "--n", "308"], "10^±308 kg", "0 to 307")
 refused([delassus, "stress", "--seed", "-1"], "--seed", "'-1'", "a whole number from 0")
-refused([delassus, "stress", "--time", "5x"], "--time", "5x", "a positive number of seconds")
+refused([delassus, "stress", "--time", "5x"], "--time", "'5x'", "a number of seconds > 0", "10m")
+for time in ["0", "-1s", "1e999", "1e300h", "nan", ""]:
+    refused([delassus, "stress", "--time", time], "--time", f"'{time}'", "a number of seconds > 0")
 refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite number > 0 [s]")
 for program in programs:
     printed([tests / program, "--help"], "Exit code 1", "--help")
-    refused([tests / program, "--nosuch"], "--nosuch", "--help")
+    misspelt([tests / program, "--nosuch"], "--nosuch", "--help")
 refused([tests / "certificate", "--count", "abc"], "--count", "'abc'", "a whole number from 1")
 refused([tests / "certificate", "--shard", "3/2"], "--shard", "'3/2'", "i/n with 1 ≤ i ≤ n")
 refused([tests / "certificate", "--divide", "0"], "--divide", "'0'", "a finite number > 0")
 refused([tests / "hard_cases", "--family", "nosuch"], "nosuch", "stiffest")
 refused([tests / "defects", "nosuch"], "nosuch", "one_part_in_1e10")
+
+# Numbers that are none, each with its reason; names that are nearly right.
+for x, advice in {"1e999": "exponent", "nan": "the number meant", "1,5": "decimal point", "1kg": "the number alone", "abc": "digits", "-1": "default"}.items():
+    refused([delassus, "apply", "cassie", "--op", "lcaba", "--damping", x], "--damping", f"'{x}'", "≥ 0 [1/kg]", advice)
+    refused([delassus, "apply", "cassie", "--op", "lcaba", "--solve", "--accuracy", x], "--accuracy", f"'{x}'", "≥ 0, or inf", advice)
+refused([delassus, "accuracy", "cassie", "--away", "1e999"], "--away", "'1e999'", "[m]", "exponent")
+refused([delassus, "check", "cassie", "--op", "lcabaa"], "\"lcabaa\"", "did you mean lcaba?", "list operators")
+refused([delassus, "check", "--family", "rign"], "\"rign\"", "did you mean ring?", "list families")
+refused([delassus, "check", "--family", "ring", "--defect", "one_part_in_1e11"], "did you mean one_part_in_1e10?", "list defects")
+refused([delassus, "accuracy", "cassie", "--op", "lcabaa"], "\"lcabaa\"", "did you mean lcaba?")
+refused([delassus, "list", "operatos"], "'operatos'", "did you mean operators?")
+refused([delassus, "apply", "cassie", "--op", "lcaba", "--rhs", "once"], "'once'", "did you mean ones?")
+refused([delassus, "desribe", "cassie"], "\"desribe\"", "did you mean describe?", "--help")
+refused([delassus, "describe", "casie"], "\"casie\"", "did you mean cassie?")
+refused([delassus, "apply", "cassie", "--op", "aba_sweep", "--solve"], "--op aba_sweep", "has no solve", "lcaba")
+misspelt([delassus, "describe", "cassie", "--strickt"], "--strickt", "did you mean --strict?", "--help")
+misspelt([delassus, "apply", "cassie", "--op", "lcaba", "--dampin=1"], "--dampin", "did you mean --damping?", "--help")
 
 refused([delassus, "survey", "/no/such/folder"], "/no/such/folder", "a folder with robots")
 with tempfile.TemporaryDirectory() as folder:
@@ -77,6 +108,10 @@ with tempfile.TemporaryDirectory() as folder:
                         "[-1e999": ["entry 0", "-1e999 is not a finite number"]}.items():
         vector.write_text(text)
         refused([delassus, "apply", "swimmer:2", "--op", "lcaba", "--solve", "--input", vector], str(vector), "finite numbers", *words)
+    vector.write_text('{"scenes": 1e999}')
+    refused([delassus, "bench", "--scene", "swimmer:1", "--op", "lcaba", "--baseline", vector], str(vector), "beyond double")
+    refused([delassus, "stress", "--merge", vector], str(vector), "beyond double")
+    refused([delassus, "replay", vector], str(vector), "1e999")
     found = json.loads(printed([delassus, "stress", "--seed", "1", "--count", "2", "--json", "--folder", folder]))
     if found["problems"] != 2 or found["failures"]:
         failures.append(f"stress --json: {found}")
