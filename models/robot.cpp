@@ -54,7 +54,7 @@ void check_regular_robot(const Model& model, std::size_t first, const std::strin
 
 void Findings::warn(std::string kind, const std::string& file, const std::string& element, const std::string& problem,
                     const std::string& advice) {
-  if (strict_) throw ModelError(file, element, problem + " (an error in strict mode)", advice);
+  if (strict_) throw ModelError(file, element, problem + " (an error in strict mode)", advice + "; mend the file, or leave strict mode off");
   warnings.push_back({std::move(kind), file + ": " + element + ": " + problem + " (" + advice + ")"});
 }
 

@@ -82,11 +82,11 @@ double seconds_of(const std::string& text) {
   const bool has_unit = unit != std::string_view::npos;
   const auto x = number(has_unit ? text.substr(0, text.size() - 1) : text);
   const double seconds = x ? *x * (unit == 1 ? 60 : unit == 2 ? 3600 : 1) : 0;
-  return seconds > 0 && std::isfinite(seconds) ? seconds : std::nan("");
+  return seconds > 0 && seconds <= 1e9 ? seconds : std::nan("");  // a clock counts no more
 }
 
 Check duration() {
-  return accepts("a number of seconds > 0, or one with s, m or h behind it; 60, 60s, 10m, 2h", [](const std::string& text) { return !std::isnan(seconds_of(text)); });
+  return accepts("a number of seconds > 0 up to 1e9, or one with s, m or h behind it; 60, 60s, 10m, 2h", [](const std::string& text) { return !std::isnan(seconds_of(text)); });
 }
 
 Check whole(std::int64_t least) {

@@ -75,7 +75,7 @@ refused([delassus, "check", "--family", "rign"], "\"rign\"", "did you mean ring?
 refused([delassus, "check", "--family", "ring", "--defect", "one_part_in_1e11"], "did you mean one_part_in_1e10?", "list defects")
 refused([delassus, "accuracy", "cassie", "--op", "lcabaa"], "\"lcabaa\"", "did you mean lcaba?")
 refused([delassus, "list", "operatos"], "'operatos'", "did you mean operators?")
-refused([delassus, "apply", "cassie", "--op", "lcaba", "--rhs", "once"], "'once'", "did you mean ones?")
+refused([delassus, "apply", "cassie", "--op", "lcaba", "--rhs", "one"], "'one'", "did you mean ones?")
 refused([delassus, "desribe", "cassie"], "\"desribe\"", "did you mean describe?", "--help")
 refused([delassus, "describe", "casie"], "\"casie\"", "did you mean cassie?")
 refused([delassus, "apply", "cassie", "--op", "aba_sweep", "--solve"], "--op aba_sweep", "has no solve", "lcaba")
