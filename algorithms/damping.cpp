@@ -1,10 +1,10 @@
 // R⁻¹ as it is given: its product with a vector, whether it fits a structure, whether it can be right.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 
 #include "algorithms/lanes.h"
+#include "algorithms/message.h"
 #include "algorithms/problem.h"
 #include "algorithms/scalars.h"
 
@@ -61,11 +61,6 @@ template <class T> bool right(const MatrixX<T>& B, T* scratch) {
     std::copy_n(B.data(), n * n, scratch);
     return positive_semidefinite(Eigen::Map<MatrixX<T>>(scratch, n, n));
   }
-}
-
-std::string shortest(double x) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
 template <class T> void check_block(const MatrixX<T>& B, const std::string& element) {
@@ -163,7 +158,7 @@ template <class T> void Damping<T>::validate(const Structure& s) const {
   for (Index i = 0; i < s.rows; ++i)
     if (!finite(diagonal[i]) || diagonal[i] < T(0))
       throw ModelError("", "damping of row " + std::to_string(i),
-                       shortest(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]");
+                       number_text(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]");
   if (blocks.empty()) return;
   const auto owner = row_owners(s);
   Index next = 0;

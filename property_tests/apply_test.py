@@ -8,6 +8,8 @@ import subprocess
 import sys
 import tempfile
 
+EPS = 2.0**-53
+
 delassus = pathlib.Path(sys.argv[1]) / "cli/delassus"
 failures = []
 
@@ -84,12 +86,12 @@ with tempfile.TemporaryDirectory() as name:
     gimbal = folder / "gimbal.yaml"
     gimbal.write_text("robots:\n  - {name: r, urdf: gimbal.urdf, base: fixed}\n"
                       "constraints:\n  - {kind: point, of: r/b, at: [0.3, -0.2, 0.1], to: world}\n")
-    for op, joint_named in {"ladder": "jx", "lcaba": "jx", "dense_cholesky": "jx", "kkt_elimination": "jx"}.items():
+    for op in ("ladder", "lcaba", "dense_cholesky", "kkt_elimination"):
         lost = text(gimbal, "--op", op, "--solve", "--damping", 1e-6)
-        expect(f"gimbal lock by {op}", f"status lost_pivot at joint r/{joint_named} (M is singular at this pose" in lost)
+        expect(f"gimbal lock by {op}", "status lost_pivot at joint r/jx (M is singular at this pose" in lost)
 
 consistent = solved("cassie", *hard, "--rhs", "consistent")
-expect("cassie: ok", consistent["report"]["status"] == "ok" and 0 <= consistent["report"]["error_bound"] < 1e-14)
+expect("cassie: ok", consistent["report"]["status"] == "ok" and 0 <= consistent["report"]["error_bound"] < 30 * EPS)
 expect("cassie: 4 of 24 rows", len(consistent["dependent_rows"]) == 4 and consistent["rows"] == 24)
 expect("cassie: ones contradict", solved("cassie", *hard)["report"]["status"] == "inconsistent")
 
@@ -101,7 +103,7 @@ with tempfile.TemporaryDirectory() as name:
     vector.write_text(json.dumps(a))
     for damping in (1e-8, 1e-12, 1e-14, 1e-16, 1e-18):
         said = solved("cassie", "--op", "ladder", "--damping", damping, "--input", vector)["report"]
-        expect(f"cassie at {damping}: {said}", said["status"] == "ok" and said["error_bound"] < 1e-15)
+        expect(f"cassie at {damping}: {said}", said["status"] == "ok" and said["error_bound"] < 30 * EPS)
 
 for failure in failures:
     print("FAILED", failure)

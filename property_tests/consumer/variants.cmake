@@ -1,12 +1,7 @@
 # Builds the preset `package`, installs it, builds the consumer without flags, and runs it with every variant the loader may pick
 # here: each says its own name, and all the same forces.
 #   cmake -DROOT=<the project> -DSOURCE=<this folder> -DWORK=<scratch> -DGENERATOR=<name> -DCXX=<compiler> -P variants.cmake
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "failed: ${ARGV}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/step.cmake)
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/build)
 run(${CMAKE_COMMAND} --preset package -S ${ROOT} -B ${WORK}/package -DCMAKE_CXX_COMPILER=${CXX})
 run(${CMAKE_COMMAND} --build ${WORK}/package)
