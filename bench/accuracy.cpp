@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "bench/accuracy.h"
 
 #include <algorithm>
@@ -5,9 +6,9 @@
 #include <limits>
 #include <set>
 
-#include "algorithms/closest.h"
-#include "algorithms/lcaba_refined.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/operators/lcaba_refined.h"
 #include "bench/stopwatch.h"
 #include "bench/text.h"
 #include "reference/kkt_cholmod.h"

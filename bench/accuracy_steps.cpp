@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "bench/accuracy_steps.h"
 
 #include <algorithm>

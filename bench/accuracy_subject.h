@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "algorithms/problem.h"
+#include "algorithms/problem/problem.h"
 #include "models/scene.h"
 
 namespace delassus::accuracy {

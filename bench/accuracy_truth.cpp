@@ -1,11 +1,12 @@
+#include "algorithms/kit/test_scalars.h"
 #include "bench/accuracy_truth.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "algorithms/delassus.h"
-#include "algorithms/factor.h"
-#include "algorithms/kkt_residual.h"
+#include "algorithms/factors/factor.h"
+#include "algorithms/factors/kkt_residual.h"
 #include "generators/random.h"
 #include "reference/sensitivity.h"
 

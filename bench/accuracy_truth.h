@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::accuracy {
 

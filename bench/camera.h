@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "algorithms/model.h"
+#include "algorithms/mechanism/model.h"
 
 namespace delassus::bench {
 

@@ -1,6 +1,7 @@
+#include "algorithms/kit/test_scalars.h"
 #include "bench/cell.h"
 
-#include "algorithms/mechanism.h"
+#include "algorithms/mechanism/mechanism.h"
 
 namespace delassus::bench {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/delassus.h"
-#include "algorithms/model.h"
+#include "algorithms/mechanism/model.h"
 #include "bench/results.h"
 
 namespace delassus::bench {

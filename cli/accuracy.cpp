@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "bench/accuracy_campaign.h"
 #include "bench/accuracy_digest.h"
 #include "bench/plot.h"

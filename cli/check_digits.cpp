@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "bench/digits_picture.h"
 #include "bench/plot.h"
 #include "bench/text.h"

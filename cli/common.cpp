@@ -7,7 +7,7 @@
 #include <iterator>
 #include <map>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "property_tests/defects.h"
 #include "property_tests/options.h"
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <new>
 
-#include "algorithms/elimination.h"
+#include "algorithms/factors/plan.h"
 #include "bench/scene_facts.h"
 #include "bench/text.h"
 #include "cli/commands.h"

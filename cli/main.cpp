@@ -8,9 +8,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
-#include "algorithms/status.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/errors/status.h"
 #include "cli/commands.h"
 #include "property_tests/allocations.h"
 #include "property_tests/options.h"

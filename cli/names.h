@@ -4,7 +4,7 @@
 #include <string>
 
 #include "algorithms/delassus.h"
-#include "algorithms/model.h"
+#include "algorithms/mechanism/model.h"
 
 namespace delassus::cli {
 

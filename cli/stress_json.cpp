@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "algorithms/status.h"
+#include "algorithms/errors/status.h"
 #include "generators/classes.h"
 
 namespace delassus::cli {

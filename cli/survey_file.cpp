@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "cli/survey_file.h"
 
 #include <console_bridge/console.h>

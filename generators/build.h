@@ -2,7 +2,7 @@
 // round, and the last bit may be the compiler's.
 #pragma once
 
-#include "algorithms/problem.h"
+#include "algorithms/problem/problem.h"
 #include "generators/spec.h"
 
 namespace delassus::generators {

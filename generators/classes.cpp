@@ -1,8 +1,7 @@
+#include "algorithms/kit/test_scalars.h"
 #include "generators/classes.h"
 
 #include <algorithm>
-
-#include "algorithms/scalars.h"
 
 namespace delassus::generators {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
-#include "algorithms/status.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/errors/status.h"
 #include "generators/draft.h"
 #include "generators/families_hard.h"
 #include "generators/families_linkages.h"

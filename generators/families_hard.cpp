@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "algorithms/status.h"
+#include "algorithms/errors/status.h"
 #include "generators/draft.h"
 
 namespace delassus::generators {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algorithms/closest.h"
-#include "algorithms/status.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/status.h"
 
 namespace delassus::generators {
 namespace {

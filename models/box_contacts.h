@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
 
 namespace delassus {
 

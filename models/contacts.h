@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 
 namespace delassus {
 

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
 
 namespace delassus {
 

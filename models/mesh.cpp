@@ -12,8 +12,8 @@
 #include <assimp/Importer.hpp>
 #endif
 
+#include "algorithms/errors/message.h"
 #include "models/hull.h"
-#include "algorithms/message.h"
 
 namespace delassus {
 namespace {

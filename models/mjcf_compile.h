@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "algorithms/problem.h"
+#include "algorithms/problem/problem.h"
 #include "models/mjcf_xml.h"
 
 namespace delassus {

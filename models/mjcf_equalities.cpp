@@ -1,7 +1,7 @@
 // <equality> as constraints: connect, weld, joint, and tendon where all tendons are fixed ones.
 #include <cmath>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {

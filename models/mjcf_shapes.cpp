@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 
 namespace delassus {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/problem.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus {
 

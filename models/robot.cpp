@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/regularity.h"
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/mechanism/regularity.h"
 #include "models/mjcf.h"
 #include "models/sdf.h"
 #include "models/urdf.h"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/model.h"
-#include "algorithms/status.h"
+#include "algorithms/errors/status.h"
+#include "algorithms/mechanism/model.h"
 
 namespace delassus {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 
 namespace delassus {
 

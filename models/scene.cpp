@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/loop_closing.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "models/robot.h"
 
 namespace delassus {

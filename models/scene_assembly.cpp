@@ -3,7 +3,7 @@
 #include <charconv>
 #include <set>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

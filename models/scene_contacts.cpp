@@ -2,9 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "algorithms/closest.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/mesh.h"
-#include "algorithms/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

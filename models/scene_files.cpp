@@ -1,8 +1,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
 #include "models/yaml.h"

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/status.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/errors/status.h"
 
 namespace delassus {
 namespace {

@@ -1,6 +1,6 @@
 #include "models/sdf_document.h"
 
-#include "algorithms/status.h"
+#include "algorithms/errors/status.h"
 
 #ifdef DELASSUS_SDFORMAT
 
@@ -12,8 +12,8 @@
 
 #include <Eigen/Geometry>
 
+#include "algorithms/errors/message.h"
 #include "models/mesh.h"
-#include "algorithms/message.h"
 #include "models/sdf_counts.h"
 #include "models/sdf_text.h"
 #include "models/xml_lines.h"

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "algorithms/errors/message.h"
 #include "models/contacts.h"
-#include "algorithms/message.h"
 #include "models/sdf_builder.h"
 
 namespace delassus {

@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/closest.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/inertia_check.h"
-#include "algorithms/message.h"
 #include "models/robot_bodies.h"
 #include "models/urdf_check.h"
 

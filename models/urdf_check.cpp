@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 
 namespace delassus {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

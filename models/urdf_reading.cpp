@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/urdf_check.h"
 
 namespace delassus {

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 #include "models/robot.h"
 
 namespace delassus {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
 
 namespace delassus {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
 
 namespace delassus {
 

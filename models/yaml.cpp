@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "models/robot.h"
 
 namespace delassus {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/spatial.h"
-#include "algorithms/status.h"
+#include "algorithms/errors/status.h"
+#include "algorithms/kit/spatial.h"
 
 namespace delassus {
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/known.h"
 #include "property_tests/truth.h"
 

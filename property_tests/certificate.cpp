@@ -3,7 +3,7 @@
 //   certificate [--count K] [--seed S] [--shard i/n] [--divide D] [--hard] [--markdown]
 //
 // Problems are generators::arbitrary(S), arbitrary(S + 1), …, those with A regular beyond rounding and up to 40 degrees of freedom and rows.
-// Where a row is hard (R⁻¹ = 0), answers are counted apart: another bound (algorithms/kkt_elimination.h).
+// Where a row is hard (R⁻¹ = 0), answers are counted apart: another bound (algorithms/operators/kkt_elimination.h).
 // Judged are the λ of every operator that gives a bound, in the energy norm (truth.h); and of refinement.h itself every
 // iterate on the way, the pair (ν, λ) and λ alone, also with corrections that are off by 1 %. Rounding the answer to
 // double is allowed for once, and so is the rounding of the bound's own evaluation (truth.h). The estimate is compared
@@ -16,8 +16,9 @@
 #include <limits>
 #include <map>
 
-#include "algorithms/capped_inverse.h"
-#include "algorithms/refinement.h"
+#include "algorithms/factors/capped_inverse.h"
+#include "algorithms/factors/refinement.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/arbitrary.h"
 #include "property_tests/options.h"
 #include "property_tests/route.h"

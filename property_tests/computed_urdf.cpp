@@ -1,9 +1,10 @@
 // What a robot of random_urdf.h comes to, from the value itself.
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/random_urdf.h"
 
 #include <cmath>
 
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
 
 namespace delassus::test {
 namespace {

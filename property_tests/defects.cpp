@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "property_tests/defects_wrong.h"
 
 namespace delassus::laws {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/defects_wrong.h"
 
 namespace delassus::laws {

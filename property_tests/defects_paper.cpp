@@ -4,7 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "algorithms/block_diagonal.h"
+#include "algorithms/factors/block_diagonal.h"
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/defects.h"
 #include "property_tests/printed_algorithms.h"
 #include "reference/definition.h"

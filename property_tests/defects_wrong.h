@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/defects.h"
 
 namespace delassus::laws {

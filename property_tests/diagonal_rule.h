@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/delassus.h"
-#include "algorithms/ldlt_pivoted.h"
+#include "algorithms/kit/ldlt_pivoted.h"
 
 namespace delassus::laws {
 

@@ -1,8 +1,9 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/digits.h"
 
 #include <algorithm>
 
-#include "algorithms/factor.h"
+#include "algorithms/factors/factor.h"
 
 namespace delassus {
 

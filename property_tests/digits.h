@@ -1,4 +1,4 @@
-// How many digits each link costs: the recursions that ship, run on Stochastic (algorithms/stochastic.h).
+// How many digits each link costs: the recursions that ship, run on Stochastic (algorithms/kit/stochastic.h).
 //
 //   apply   a = J M⁻¹ Jᵀ x + R⁻¹ x             as aba_sweep
 //   solve   f = R x − R J M_R⁻¹ Jᵀ R x          as lcaba: the direct formula
@@ -18,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/problem.h"
-#include "algorithms/status.h"
-#include "algorithms/stochastic.h"
+#include "algorithms/errors/status.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::digits {
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/draft.h"
 #include "property_tests/defects.h"

@@ -1,7 +1,8 @@
 // The worked example of docs/adding_an_operator.md: an operator, its row, and every law held against it.
 #include <iostream>
 
-#include "algorithms/aba_sweep.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/operators/aba_sweep.h"
 #include "property_tests/allocations.h"
 #include "property_tests/laws.h"
 

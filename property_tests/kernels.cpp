@@ -1,11 +1,12 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/kernels.h"
 
 #include <utility>
 
-#include "algorithms/columns.h"
-#include "algorithms/factor.h"
-#include "algorithms/kkt_residual.h"
-#include "algorithms/vectors.h"
+#include "algorithms/factors/factor.h"
+#include "algorithms/factors/kkt_residual.h"
+#include "algorithms/kit/vectors.h"
+#include "algorithms/kit/columns.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {

@@ -1,6 +1,7 @@
 // (K)  M δν − Jᵀδλ = r₁,  J δν + R⁻¹δλ = r₂  by the definition. Used by one_solve*.cpp only.
 #pragma once
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws.h"
 #include "property_tests/variants.h"
 #include "reference/sensitivity.h"

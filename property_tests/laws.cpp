@@ -1,11 +1,12 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 #include "generators/build.h"
 #include "property_tests/laws_conduct.h"
 #include "property_tests/laws_groups.h"

@@ -1,6 +1,7 @@
 // The rows of the table of laws that stand in the files that check them; laws.cpp lists them after its own.
 #pragma once
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws.h"
 
 namespace delassus::laws {

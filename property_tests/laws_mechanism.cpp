@@ -1,4 +1,5 @@
 // Laws about other descriptions of the same mechanism: moved, re-rooted, split, welded, with rotors, cut.
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"
 #include "property_tests/variants_mechanism.h"

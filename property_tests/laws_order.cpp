@@ -1,5 +1,6 @@
 // Inequalities between quadratic forms: more damping, a joint less or a mass more, and the band around R. An inequality
 // is broken by as much as one side exceeds the other; that excess is the error.
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"
 #include "property_tests/variants_mechanism.h"

@@ -2,6 +2,7 @@
 // answered without them holds on all rows.
 #include <algorithm>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"

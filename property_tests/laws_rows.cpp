@@ -1,6 +1,7 @@
 // Laws about the rows alone: fewer, in another order, split, stacked, with idle links, parallel, in other units.
 #include <cfenv>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"
 #include "property_tests/variants_rows.h"

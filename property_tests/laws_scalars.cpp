@@ -4,6 +4,7 @@
 #include <optional>
 #include <thread>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/second.h"
 

@@ -1,7 +1,8 @@
 // A linkage as a Model of the library, by a random tree and turned; and its inertia at the drivers without either.
 #pragma once
 
-#include "algorithms/model.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/model.h"
 #include "property_tests/linkage_shapes.h"
 
 namespace delassus::laws {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/scalars.h"
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/random.h"
 
 namespace delassus::laws {

@@ -1,8 +1,9 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/mjcf_reading.h"
 
 #include <stdexcept>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/mjcf.h"
 #include "reference/mjcf_witness.h"
 #include "reference/mujoco_witness.h"

@@ -31,7 +31,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
 # Sources, and the operators and parts (mutant_killer.cpp) that hold them.
 FILES = {
-    "elimination.cpp": "plans lcaba aba_sweep", "elimination.h": "plans lcaba aba_sweep lcaba_refined",
+    "plan.cpp": "plans lcaba aba_sweep", "plan.h": "plans lcaba aba_sweep lcaba_refined",
     "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
     "factor.cpp": "kernels lcaba aba_sweep", "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
     "columns.h": "Columns lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
@@ -65,7 +65,8 @@ def killer_of(name):
 
 
 def folder_of(name):
-    return "" if "/" in name else next((f for f in ("algorithms", "models") if os.path.exists(os.path.join(ROOT, f, name))), "models")
+    rooms = ["algorithms/" + room for room in sorted(os.listdir(os.path.join(ROOT, "algorithms")))]
+    return "" if "/" in name else next((f for f in rooms + ["models"] if os.path.exists(os.path.join(ROOT, f, name))), "models")
 
 
 def read_equivalent(path):
@@ -152,11 +153,7 @@ class Copy:
             with open(os.path.join(fresh, folder_of(name), "CMakeLists.txt"), "a", encoding="utf-8") as f:
                 f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1;-UNDEBUG\")\n" % name)
         if not self.way_in:
-            self.fewer_scalars(os.path.join(fresh, "algorithms"))
-            with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
-                f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n"
-                        "target_compile_options(delassus PRIVATE -O1)\ntarget_compile_definitions(delassus PRIVATE _GLIBCXX_ASSERTIONS)\n")
-        self.take_over(fresh)
+            self.fewer_scalars(fresh)
 
     def take_over(self, fresh):
         """Makes the tree equal to `fresh` without touching files that are equal already."""
@@ -170,19 +167,20 @@ class Copy:
                     os.utime(target)  # newer than what was built of it
 
     @staticmethod
-    def fewer_scalars(folder):
-        for name in os.listdir(folder):
-            if not name.endswith(".cpp") or name in ("operator.cpp", "problem.cpp", "block_diagonal.cpp", "kinematics.cpp", "constraints.cpp"):
-                continue
-            path = os.path.join(folder, name)
-            text = open(path, encoding="utf-8").read()
-            if name == "registry.cpp":
-                text = re.sub(r"make<(\w+), (?:float|Quad|Counted|PrimeField)>", "nullptr", text)
-            else:
-                floats = r" \1(float)" if name in ("factor.cpp", "sweep.cpp") else ""  # for factors narrower than double
-                text = re.sub(r"^(?:template|DELASSUS_INSTANTIATE\().*\bStochastic\b.*\n", "", text, flags=re.M)
-                text = re.sub(r"^DELASSUS_FOR_EACH\w*SCALAR\((\w+)\)", r"\1(double)" + floats + r" \1(::delassus::Rational)", text, flags=re.M)
+    def fewer_scalars(fresh):
+        """One library for double, float and Rational instead of two for all scalars."""
+        def edit(path, pattern, by):
+            path = os.path.join(fresh, "algorithms", path)
+            text, count = re.subn(pattern, by, open(path, encoding="utf-8").read())
+            if not count:
+                sys.exit("mutate.py: %s has no %s" % (path, pattern))
             open(path, "w", encoding="utf-8").write(text)
+        edit("kit/instantiate.h", r"(#define DELASSUS_FOR_EACH_(?:ORDERED_)?SCALAR\(X\)) X\(double\) X\(float\)", r"\1 X(double) X(float) X(::delassus::Rational)")
+        edit("kit/instantiate.h", r"#else", '#else\n#include "algorithms/kit/exact.h"')
+        edit("CMakeLists.txt", r"STATIC \$\{delassus_recursions\}", "STATIC problem/problem.cpp")
+        with open(os.path.join(fresh, "algorithms", "CMakeLists.txt"), "a", encoding="utf-8") as f:
+            f.write("target_precompile_headers(delassus PRIVATE <Eigen/Core> <gmpxx.h>)\n"
+                    "target_compile_options(delassus PRIVATE -O1)\ntarget_compile_definitions(delassus PRIVATE _GLIBCXX_ASSERTIONS)\n")
 
     def configure(self):
         if self.way_in:
@@ -221,8 +219,6 @@ def judge(copy, name, text, group):
     """Outcomes of mutants of one file, all in one program."""
     if not group:
         return
-    if "float" not in FILES[name] and "preconditioned" not in FILES[name]:
-        text = text.replace(" DELASSUS_INSTANTIATE(float)", "")
     copy.write(name, mutant_batch.compose(name, text, group))
     made = copy.make(name)
     if made.returncode == 0:

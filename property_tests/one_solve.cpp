@@ -1,9 +1,10 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/one_solve.h"
 
 #include <cmath>
 
-#include "algorithms/capped_inverse.h"
-#include "algorithms/kkt_elimination.h"
+#include "algorithms/factors/capped_inverse.h"
+#include "algorithms/operators/kkt_elimination.h"
 #include "property_tests/kkt_system.h"
 
 namespace delassus::laws {

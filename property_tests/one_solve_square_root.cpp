@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "algorithms/square_root_factor.h"
+#include "algorithms/factors/square_root_factor.h"
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/kkt_system.h"
 #include "property_tests/one_solve.h"
 

@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "algorithms/closest.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
 
 namespace delassus::options {
 namespace {

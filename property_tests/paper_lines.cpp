@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/shrink.h"
 #include "property_tests/options.h"

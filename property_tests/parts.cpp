@@ -1,8 +1,7 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/parts.h"
 
 #include <algorithm>
-
-#include "algorithms/scalars.h"
 
 namespace delassus::laws {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "algorithms/elimination.h"
+#include "algorithms/factors/plan.h"
 
 namespace delassus {
 

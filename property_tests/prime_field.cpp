@@ -26,6 +26,7 @@
 #include <string>
 
 #include "algorithms/delassus.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/draft.h"
 #include "generators/families.h"

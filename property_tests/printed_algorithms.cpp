@@ -1,6 +1,6 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/printed_algorithms.h"
 
-#include "algorithms/scalars.h"
 #include "reference/definition.h"
 
 namespace delassus::paper {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/problem.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::paper {
 

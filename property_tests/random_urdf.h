@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/scalars.h"
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
+#include "algorithms/kit/test_scalars.h"
 
 namespace delassus::test {
 

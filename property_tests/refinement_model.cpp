@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/refinement_model.h"
 
 #include <atomic>
@@ -6,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "algorithms/refinement.h"
+#include "algorithms/factors/refinement.h"
 #include "generators/build.h"
 #include "generators/families.h"
 #include "property_tests/route.h"

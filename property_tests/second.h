@@ -1,6 +1,7 @@
 // An operator on two descriptions whose rows correspond. Used by the laws only.
 #pragma once
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/laws_algebra.h"
 #include "property_tests/parts.h"
 #include "property_tests/route.h"

@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/second_reading.h"
 
 #include <tinyxml2.h>

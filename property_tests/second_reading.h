@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/kit/test_scalars.h"
 #include "models/robot.h"
 #include "reference/witness_matrices.h"
 

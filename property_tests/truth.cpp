@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/truth.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 //
 //   ‖x‖²_A = xᵀ A x = ‖M⁻¹Jᵀx‖²_M + ‖x‖²_{R⁻¹}                 the energy norm; of λ itself it is λᵀa
 //
-// A certificate B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ of a pair (ν, λ) bounds that of λ alone: from (K) of algorithms/refinement.h,
+// A certificate B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ of a pair (ν, λ) bounds that of λ alone: from (K) of algorithms/factors/refinement.h,
 // A δλ = r₂ − J M⁻¹r₁, so ‖δλ‖²_A = δλᵀr₂ − (M⁻¹Jᵀδλ)ᵀr₁ ≤ ‖δλ‖_A B, by Cauchy and Schwarz.
 // A refined λ is rounded to double when it is returned. That changes it by e, |e_r| ≤ eps |λ_r|, or half the least denormal
 // number 2⁻¹⁰⁷⁴ where λ_r is below that, and its energy by at most
@@ -15,6 +15,7 @@
 
 #include <optional>
 
+#include "algorithms/kit/test_scalars.h"
 #include "reference/definition.h"
 
 namespace delassus::laws {

@@ -13,7 +13,8 @@
 #include <iostream>
 #include <map>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "property_tests/diagonal_rule.h"
 #include "property_tests/linkage_model.h"
 #include "property_tests/options.h"

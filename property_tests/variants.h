@@ -2,8 +2,8 @@
 // Templates are instantiated for double (coefficients formed in Quad and rounded once), Rational and PrimeField.
 #pragma once
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::laws {
 

@@ -1,10 +1,10 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/variants_mechanism.h"
 
 #include <algorithm>
 #include <map>
 #include <type_traits>
 
-#include "algorithms/scalars.h"
 #include "generators/random.h"
 
 namespace delassus::laws {

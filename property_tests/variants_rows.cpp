@@ -1,9 +1,9 @@
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/variants_rows.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "algorithms/scalars.h"
 #include "generators/random.h"
 
 namespace delassus::laws {

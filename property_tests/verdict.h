@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "algorithms/scalars.h"
-#include "algorithms/spatial.h"
+#include "algorithms/kit/spatial.h"
+#include "algorithms/kit/test_scalars.h"
 
 namespace delassus::laws {
 

@@ -8,8 +8,8 @@
 // Instantiated for double, Quad and Rational (exact). Cost O(N d² + n³ + n² m + n m² + m³), d = dofs on a path.
 #pragma once
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::reference {
 

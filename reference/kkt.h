@@ -12,8 +12,8 @@
 //   apply  A f = K a + 𝒦 ν + R⁻¹ f from the first three rows with g = Kᵀ f, τ = 𝒦ᵀ f.
 #pragma once
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::reference {
 

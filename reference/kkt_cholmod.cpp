@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "reference/kkt_cholmod.h"
 
 #include <cholmod.h>

@@ -17,7 +17,7 @@
 
 #include <memory>
 
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
 #include "reference/kkt.h"
 
 namespace delassus::reference {

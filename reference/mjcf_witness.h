@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 
 namespace delassus::reference {
 

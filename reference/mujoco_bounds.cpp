@@ -1,7 +1,8 @@
 // Bounds of the comparison with MuJoCo (mujoco_witness.h). Nothing here calls MuJoCo.
 #include <cmath>
 
-#include "algorithms/loop_closing.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "reference/definition.h"
 #include "reference/mujoco_witness.h"
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::reference {
 

@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "reference/definition.h"
 #include "reference/kkt_cholmod.h"
 #include "reference/maximal.h"

@@ -1,4 +1,5 @@
 // The reading of sdf_witness.h: tinyxml2 for the XML, strtod for the numbers.
+#include "algorithms/kit/test_scalars.h"
 #include "reference/sdf_witness.h"
 
 #include <tinyxml2.h>

@@ -1,5 +1,5 @@
 // A witness of what an SDF file says: a second reading, and M and J by textbook formulas. Shares no line with models/ and
-// no library but tinyxml2; the model of algorithms/model.h only tells the order of ν and what q means.
+// no library but tinyxml2; the model of algorithms/mechanism/model.h only tells the order of ν and what q means.
 //
 //   X_i(0)   world poses of links and joints from <pose>, its relative_to, frames, nested models: one recursion over names
 //   D_i(q)   = Π_k X_k m_k(q) X_k⁻¹ over the joints on the path: displacement of link i from the file's pose, in the world
@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/kit/test_scalars.h"
 #include "reference/witness_matrices.h"
 
 namespace delassus::reference {

@@ -3,6 +3,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "algorithms/kit/test_scalars.h"
 #include "reference/sdf_witness.h"
 
 namespace delassus::reference {

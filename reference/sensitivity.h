@@ -36,6 +36,7 @@
 
 #include <memory>
 
+#include "algorithms/kit/test_scalars.h"
 #include "reference/definition.h"
 
 namespace delassus::reference {

@@ -1,5 +1,5 @@
 // A witness of what a URDF file says: a second reading, and M and J by textbook formulas. Shares no line with models/ and
-// no recursion with the library; the model of algorithms/model.h only tells the order of ν and what q means.
+// no recursion with the library; the model of algorithms/mechanism/model.h only tells the order of ν and what q means.
 //
 //   X_i   = X_root Π_k X_k(q)                        4 × 4 transforms from the root link to link i
 //   J_i   column by column: (axis, axis × (c_i − o)) of a turning freedom at o, (0, axis) of a sliding one
@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/model.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/scalars.h"
+#include "algorithms/mechanism/model.h"
 #include "reference/witness_matrices.h"
 
 namespace delassus::reference {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "algorithms/kit/test_scalars.h"
 #include "reference/definition.h"
 #include "reference/urdf_witness.h"
 #include "reference/witness_matrices.h"

@@ -16,8 +16,8 @@
 #include <array>
 #include <vector>
 
-#include "algorithms/model.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/model.h"
 
 namespace delassus::reference {
 

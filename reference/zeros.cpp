@@ -1,3 +1,4 @@
+#include "algorithms/kit/test_scalars.h"
 #include "reference/zeros.h"
 
 #include <algorithm>

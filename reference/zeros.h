@@ -8,8 +8,8 @@
 // Coupling is made transitive, which can only miss zeros, never invent them.
 #pragma once
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::reference {
 

@@ -1,5 +1,3 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
-list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
-find_dependency(GMP)
 include(${CMAKE_CURRENT_LIST_DIR}/delassus-targets.cmake)

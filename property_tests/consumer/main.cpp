@@ -3,7 +3,7 @@
 
 // [readme]
 #include "algorithms/delassus.h"
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 
 int main() {
   using namespace delassus;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/kit/test_scalars.h"
 #include "bench/accuracy_digest.h"
 #include "bench/accuracy_truth.h"
 #include "bench/cell.h"

@@ -1,7 +1,8 @@
 // What a solve of several columns reports.
 #include <gtest/gtest.h>
 
-#include "algorithms/columns.h"
+#include "algorithms/errors/status.h"
+#include "algorithms/kit/columns.h"
 
 namespace delassus {
 namespace {

@@ -1,7 +1,8 @@
 // Constraint rows against the rate of the closure error, by central differences in Quad, and against each other.
 #include <gtest/gtest.h>
 
-#include "algorithms/loop_closing.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "property_tests/unit/path_sums.h"
 
 namespace delassus {

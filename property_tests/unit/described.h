@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/contacts.h"
 #include "models/urdf.h"
 #include "property_tests/random_urdf.h"

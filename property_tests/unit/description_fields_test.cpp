@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "algorithms/kit/test_scalars.h"
 #include "models/scene.h"
 #include "property_tests/unit/described.h"
 

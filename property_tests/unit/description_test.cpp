@@ -2,6 +2,7 @@
 // written in another way. M, the motion of every link's frame, and where everything stands.
 #include <gtest/gtest.h>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/unit/described.h"
 #include "reference/urdf_witness.h"
 

@@ -2,6 +2,7 @@
 //
 // Coverage: Student's interval holds the exact result with probability 95 %. Rows of one run share roundings, so a run
 // counts as one trial: the share outside over all rows of `runs` runs is at most 0.05 + 3 √(0.05 · 0.95 / runs).
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/digits.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 #include <cstdio>
 
 #include "algorithms/delassus.h"
-#include "algorithms/factor.h"
+#include "algorithms/factors/factor.h"
 #include "generators/random.h"
 #include "models/scene.h"
 #include "reference/definition.h"

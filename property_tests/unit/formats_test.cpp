@@ -8,7 +8,8 @@
 #include <functional>
 #include <sstream>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/robot.h"
 #include "property_tests/random_urdf.h"
 #include "property_tests/unit/path_sums.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/draft.h"
 #include "generators/families.h"

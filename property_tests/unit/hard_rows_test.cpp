@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/delassus.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "models/scene.h"
 #include "property_tests/verdict.h"

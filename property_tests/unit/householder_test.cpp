@@ -3,7 +3,8 @@
 
 #include <random>
 
-#include "algorithms/householder.h"
+#include "algorithms/kit/householder.h"
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/verdict.h"
 
 namespace delassus {

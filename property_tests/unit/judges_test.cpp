@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/arbitrary.h"
 #include "generators/build.h"
 #include "generators/families.h"

@@ -1,5 +1,6 @@
 // Kinematics against closed forms by hand, against itself in Quad, and far from the origin.
-#include "algorithms/mechanism.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/mechanism.h"
 
 #include <gtest/gtest.h>
 

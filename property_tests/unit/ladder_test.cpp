@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "algorithms/delassus.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/families.h"
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "algorithms/delassus.h"
+#include "algorithms/kit/test_scalars.h"
 #include "reference/definition.h"
 #include "reference/lagrangian.h"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "algorithms/model.h"
+#include "algorithms/mechanism/model.h"
 
 namespace delassus::unit {
 

@@ -8,8 +8,9 @@
 #include <sstream>
 
 #include "algorithms/delassus.h"
-#include "algorithms/loop_closing.h"
-#include "algorithms/kinematics.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/kinematics.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "property_tests/unit/lagrangian_bounds.h"
 #include "property_tests/unit/lagrangian_cases.h"
 #include "property_tests/verdict.h"
@@ -265,7 +266,7 @@ TEST(LagrangianPage, ReferenceUsesNoSpatialAlgebra) {
     for (const char* end : {".h", ".cpp"}) {
       const std::string source = contents(std::string("reference/lagrangian") + file + end);
       for (std::size_t at = 0; (at = source.find("#include \"algorithms/", at)) != std::string::npos; ++at)
-        EXPECT_TRUE(source.compare(at + 21, 9, "scalars.h") == 0 || source.compare(at + 21, 9, "spatial.h") == 0) << file;
+        EXPECT_TRUE(source.compare(at + 21, 18, "kit/test_scalars.h") == 0 || source.compare(at + 21, 13, "kit/spatial.h") == 0) << file;
       for (const char* word : {"spatial_inertia", "rotation_axis", "cross_matrix", "Vector6", "Matrix6"})
         EXPECT_EQ(source.find(word), std::string::npos) << file << " " << word;
     }

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "property_tests/unit/four_bars.h"
 #include "property_tests/unit/path_sums.h"
 

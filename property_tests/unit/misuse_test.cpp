@@ -1,11 +1,12 @@
 // Every operator refuses misuse. That the check can fail: property_tests/mutate.py runs it on mutants of the sources.
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/misuse.h"
 
 #include <gtest/gtest.h>
 
-#include "algorithms/aba_sweep.h"
-#include "algorithms/cg.h"
-#include "algorithms/lcaba.h"
+#include "algorithms/operators/aba_sweep.h"
+#include "algorithms/operators/cg.h"
+#include "algorithms/operators/lcaba.h"
 
 namespace delassus {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "algorithms/kit/test_scalars.h"
 #include "models/mjcf.h"
 #include "property_tests/mjcf_reading.h"
 #include "property_tests/unit/path_sums.h"

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "algorithms/kit/test_scalars.h"
 #include "models/urdf.h"
 #include "property_tests/unit/mjcf_text.h"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "algorithms/loop_closing.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "models/contacts.h"
 #include "models/scene.h"
 #include "property_tests/unit/mjcf_text.h"

@@ -1,6 +1,6 @@
 // Model validation (every refusal), regularity of massless bodies, and the assembly of loops.
-#include "algorithms/model.h"
-#include "algorithms/loop_closing.h"
+#include "algorithms/mechanism/loop_closing.h"
+#include "algorithms/mechanism/model.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 // the columns S, and the rows J ν at configurations where no constraint is closed.
 #include <gtest/gtest.h>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/unit/path_sums.h"
 
 namespace delassus {
@@ -100,7 +101,7 @@ TEST(moving, bodies_as_their_columns_say) {
   }
 }
 
-/// Relative velocity a minus b, as the kinds define their rows (algorithms/model.h).
+/// Relative velocity a minus b, as the kinds define their rows (algorithms/mechanism/model.h).
 VectorX<Quad> relative_velocity(Kind kind, const Moving& a, const Moving& b) {
   const Matrix3<Quad>& R = a.pose.rotation;
   const Vec apart = b.pose.translation - a.pose.translation;

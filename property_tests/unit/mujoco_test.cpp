@@ -1,5 +1,6 @@
 // M, J and J M⁻¹ Jᵀ of kinematics, definition and every operator that applies against MuJoCo (reference/mujoco_witness.h), on the robots'
 // scenes and on random trees; and the same comparison failing as soon as the two mechanisms differ.
+#include "algorithms/kit/test_scalars.h"
 #include "reference/mujoco_witness.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/closest.h"
+#include "algorithms/errors/closest.h"
 
 namespace delassus {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <string>
 
-#include "algorithms/kinematics.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/scalars.h"
+#include "algorithms/mechanism/kinematics.h"
 
 namespace delassus::unit {
 

@@ -1,11 +1,10 @@
 // Structure, Problem and Damping: invariants, casts, and every refusal.
-#include "algorithms/problem.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
-
-#include "algorithms/scalars.h"
 
 namespace delassus {
 namespace {

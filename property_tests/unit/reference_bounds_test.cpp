@@ -1,6 +1,7 @@
 // The bounds of the verdict: they cover what changes of the data do, and tell the direct formula from a stable one.
 #include <gtest/gtest.h>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/unit/reference_cases.h"
 #include "reference/reference.h"
 #include "reference/sensitivity.h"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <random>
 
-#include "algorithms/problem.h"
-#include "algorithms/scalars.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/problem/problem.h"
 
 namespace delassus::reference::cases {
 

@@ -1,6 +1,7 @@
 // The references against closed forms, and against each other.
 #include <gtest/gtest.h>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/unit/reference_cases.h"
 #include "reference/definition.h"
 #include "reference/kkt_cholmod.h"

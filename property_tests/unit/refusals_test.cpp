@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "algorithms/loop_closing.h"
-#include "algorithms/message.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 

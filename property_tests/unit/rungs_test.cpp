@@ -6,7 +6,7 @@
 #include <set>
 #include <thread>
 
-#include "algorithms/ladder.h"
+#include "algorithms/operators/ladder.h"
 #include "generators/build.h"
 #include "generators/families.h"
 #include "property_tests/verdict.h"

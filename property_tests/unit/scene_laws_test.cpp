@@ -5,7 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "algorithms/constraints.h"
+#include "algorithms/kit/test_scalars.h"
+#include "algorithms/mechanism/constraints.h"
 #include "models/contacts.h"
 #include "models/scene.h"
 #include "property_tests/random_urdf.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/robot.h"
 #include "property_tests/unit/temporary.h"
 

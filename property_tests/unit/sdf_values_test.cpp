@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "algorithms/loop_closing.h"
+#include "algorithms/mechanism/loop_closing.h"
 #include "models/contacts.h"
 #include "property_tests/unit/path_sums.h"
 #include "property_tests/unit/sdf_text.h"

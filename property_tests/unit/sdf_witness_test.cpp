@@ -1,5 +1,6 @@
 // The second reading of SDF files: a text with every joint type, loops, frames and a nested model; differences that it
 // must see; what it does not serve.
+#include "algorithms/kit/test_scalars.h"
 #include "reference/sdf_witness.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +8,7 @@
 #include <fstream>
 #include <functional>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/robot.h"
 #include "property_tests/fuzz_judge.h"
 #include "property_tests/second_reading.h"

@@ -5,9 +5,10 @@
 #include <random>
 
 #include "algorithms/delassus.h"
-#include "algorithms/factor.h"
-#include "algorithms/mass_root.h"
-#include "algorithms/square_root_factor.h"
+#include "algorithms/factors/factor.h"
+#include "algorithms/factors/mass_root.h"
+#include "algorithms/factors/square_root_factor.h"
+#include "algorithms/kit/test_scalars.h"
 #include "generators/build.h"
 #include "generators/families.h"
 #include "property_tests/verdict.h"

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "algorithms/kit/test_scalars.h"
 #include "generators/arbitrary.h"
 #include "generators/classes.h"
 #include "generators/draft.h"

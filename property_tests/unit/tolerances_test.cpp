@@ -5,7 +5,7 @@
 #include <functional>
 #include <sstream>
 
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 

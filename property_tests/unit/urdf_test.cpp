@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "property_tests/unit/temporary.h"
-#include "algorithms/kinematics.h"
+#include "algorithms/mechanism/kinematics.h"
 #include "models/scene.h"
 #include "models/urdf.h"
+#include "property_tests/unit/temporary.h"
 
 namespace delassus {
 namespace {

@@ -1,4 +1,5 @@
 // The second reading of URDF files: closed forms, the library's own robots, and differences that it must see.
+#include "algorithms/kit/test_scalars.h"
 #include "reference/urdf_witness.h"
 
 #include <gtest/gtest.h>

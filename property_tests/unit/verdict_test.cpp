@@ -1,4 +1,5 @@
 // The verdict itself: what counts as equal, as too large, and as nonsense.
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/verdict.h"
 
 #include <gtest/gtest.h>

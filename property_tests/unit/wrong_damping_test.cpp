@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "algorithms/kit/test_scalars.h"
 #include "property_tests/wrong_damping.h"
 
 namespace delassus {

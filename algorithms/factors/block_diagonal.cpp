@@ -1,0 +1,89 @@
+#include "algorithms/factors/block_diagonal.h"
+#include "algorithms/kit/instantiate.h"
+
+#include <algorithm>
+
+namespace delassus {
+
+template <class T> void BlockDiagonal<T>::analyze(const Structure& s) {
+  rows_.clear();
+  first_.clear();
+  for (const auto& e : s.link_constraints) rows_.push_back({e.row, e.rows});
+  for (const auto& j : s.joint_constraints) rows_.push_back({j.row, j.rows});
+  Index size = 0, largest = 0;
+  constraint_of_.assign(static_cast<std::size_t>(s.rows), 0);
+  for (std::size_t e = 0; e < rows_.size(); ++e) {
+    const Index m = rows_[e].count;
+    std::fill_n(constraint_of_.begin() + rows_[e].first, m, static_cast<Index>(e));
+    first_.push_back(size);
+    size += m * m;
+    largest = std::max(largest, m * m);
+  }
+  has_dense_.assign(rows_.size(), 0);
+  diagonal_.assign(static_cast<std::size_t>(s.rows), T(0));
+  dense_.assign(static_cast<std::size_t>(size), T(0));
+  scratch_.assign(static_cast<std::size_t>(largest), T(0));
+  any_dense_ = false;
+}
+
+template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
+  std::fill(has_dense_.begin(), has_dense_.end(), 0);
+  std::copy(damping.diagonal.begin(), damping.diagonal.end(), diagonal_.begin());
+  any_dense_ = !damping.blocks.empty();
+  for (const auto& b : damping.blocks) {
+    const Index m = b.R_inverse.rows();
+    const Index e = constraint_of_[b.row];
+    const auto [row, count] = rows_[e];
+    T* const dense = dense_.data() + first_[e];
+    if (!has_dense_[e]) {  // start from the constraint's diagonal
+      std::fill_n(dense, count * count, T(0));
+      for (Index r = 0; r < count; ++r) dense[r * count + r] = diagonal_[row + r];
+      has_dense_[e] = 1;
+    }
+    for (Index c = 0; c < m; ++c)
+      for (Index r = 0; r < m; ++r) dense[(b.row - row + c) * count + b.row - row + r] = b.R_inverse(r, c);
+  }
+}
+
+template <class T> void BlockDiagonal<T>::add_to_diagonal(const T* shift) {
+  for (std::size_t e = 0; e < rows_.size(); ++e)
+    for (Index r = 0; r < rows_[e].count; ++r) {
+      const Index row = rows_[e].first + r;
+      if (has_dense_[e]) dense_[first_[e] + r * rows_[e].count + r] += shift[row];
+      else diagonal_[row] += shift[row];
+    }
+}
+
+template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& damping, const T* shift) {
+  assign(damping);
+  if (shift != nullptr) add_to_diagonal(shift);
+  for (std::size_t e = 0; e < rows_.size(); ++e) {
+    const auto [row, m] = rows_[e];
+    if (has_dense_[e]) {  // R_e = (R_e⁻¹)⁻¹ by LDLᵀ
+      T* const dense = dense_.data() + first_[e];
+      std::copy_n(dense, m * m, scratch_.begin());
+      const Index lost = ldlt_factor(scratch_.data(), m, m);
+      if (lost >= 0) return {Status::zero_damping, row + lost};
+      ldlt_inverse(scratch_.data(), m, m, dense);
+      continue;
+    }
+    for (Index r = row; r < row + m; ++r) {
+      if (!ScalarTraits<T>::usable_pivot(diagonal_[r])) return {Status::zero_damping, r};
+      diagonal_[r] = T(1) / diagonal_[r];
+    }
+  }
+  return {};
+}
+
+template <class T> Index BlockDiagonal<T>::bytes() const {
+  return static_cast<Index>((diagonal_.size() + dense_.size() + scratch_.size()) * sizeof(T) +
+                            rows_.size() * (sizeof(Rows) + sizeof(Index) + 1) + constraint_of_.size() * sizeof(Index));
+}
+
+#define DELASSUS_INSTANTIATE(T) template class BlockDiagonal<T>;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+#ifdef DELASSUS_EXACT
+template class BlockDiagonal<Stochastic>;
+#endif
+
+}  // namespace delassus

@@ -1,0 +1,62 @@
+// R⁻¹ as given, or R: diagonal, or one dense symmetric block for a constraint whose damping is given as a block.
+// No allocation after analyze, whatever blocks a Damping brings.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "algorithms/kit/ldlt.h"
+#include "algorithms/problem/problem.h"
+
+namespace delassus {
+
+template <class T> class BlockDiagonal {
+ public:
+  void analyze(const Structure& structure);
+  /// Holds R⁻¹.
+  void assign(const Damping<T>& damping);
+  /// Holds R. Report: zero_damping with the first row whose damping is zero or whose block is singular.
+  /// With `shift` (m, ≥ 0): holds (R⁻¹ + diag shift)⁻¹.
+  [[nodiscard]] Report assign_inverse(const Damping<T>& damping, const T* shift = nullptr);
+  /// The entries of another one of the same structure divided by `unit`, rounded to T.
+  template <class U> void round(const BlockDiagonal<U>& other, const U& unit) {
+    const auto rounded = [&](const U& x) { return static_cast<T>(U(x / unit)); };
+    std::transform(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin(), rounded);
+    std::transform(other.dense_.begin(), other.dense_.end(), dense_.begin(), rounded);
+    has_dense_ = other.has_dense_;
+    any_dense_ = other.any_dense_;
+  }
+
+  [[nodiscard]] const T& diagonal(Index row) const { return diagonal_[row]; }
+  /// The block of constraint e (link constraints first, then joint constraints), rows × rows, or nullptr when diagonal.
+  [[nodiscard]] const T* dense(Index e) const { return has_dense_[e] ? dense_.data() + first_[e] : nullptr; }
+
+  /// y = this · x for m values of V (T, or lanes of T). x and y must not overlap.
+  template <class V> void multiply(const V* x, V* y) const {
+    for (std::size_t r = 0; r < diagonal_.size(); ++r) y[r] = x[r] * diagonal_[r];
+    if (!any_dense_) return;
+    for (std::size_t e = 0; e < rows_.size(); ++e)
+      if (has_dense_[e])
+        for (Index r = 0; r < rows_[e].count; ++r) {
+          V sum = x[rows_[e].first] * dense_[first_[e] + r];
+          for (Index s = 1; s < rows_[e].count; ++s) sum += x[rows_[e].first + s] * dense_[first_[e] + s * rows_[e].count + r];
+          y[rows_[e].first + r] = sum;
+        }
+  }
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  template <class U> friend class BlockDiagonal;
+  void add_to_diagonal(const T* shift);
+  struct Rows {
+    Index first, count;
+  };
+  std::vector<Rows> rows_;           // per constraint
+  std::vector<Index> first_;         // per constraint: its block in dense_
+  std::vector<Index> constraint_of_; // per row
+  std::vector<char> has_dense_;
+  std::vector<T> diagonal_, dense_, scratch_;
+  bool any_dense_ = false;
+};
+
+}  // namespace delassus

@@ -1,0 +1,114 @@
+// The one recursion of the library: the factor of M, or of M_R = M + JᵀRJ, and y = J M_R⁻¹ Jᵀ x in two sweeps.
+//
+// What     Each step eliminates one joint i. With W_j the force on node j per joint acceleration,
+//            U_i = H_ii S_i,   W_j = H_ji S_i (j ∈ N_i),   W_π += U_i,
+//            D_i = A_i + 𝒦ᵢᵀ R 𝒦ᵢ + S_iᵀ U_i
+//          the body is merged into its parent (H_ππ += H_ii + H_iπ + H_πi, H_πj += H_ij) and the Schur complement
+//            H_jk −= W_j D_i⁻¹ W_kᵀ     over Q_i = N_i ∪ {π(i)}
+//          is taken. D_i = L D Lᵀ, and S_i, W_j, 𝒦ᵢ are stored in the basis E_i = L⁻ᵀ, in which D_i is diagonal (E_iᵀD_iE_i):
+//          a joint of n_i degrees of freedom is n_i scalar steps, so the sweeps know no joint types.
+// Sweeps   force convention (docs/paper_notes.md): u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹u; then
+//            ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j;   a_i = a_π + S_i ν.
+// Singular a pivot of D_i that is not positive: M (or M_R) is singular in this arithmetic; reported, never repaired.
+// Cost     update ≈ 160 N₁ + 144 |pairs| + 12 m operations; project ≈ 48 n + 24 |W| + 24 m (one-dof joints N₁).
+// Workspace  6 per active body + 1 per active degree of freedom, times the columns.
+// Error    componentwise within the data's sensitivity as long as no pivot is lost (tested, not proven).
+// Source   paper, Algorithms 1–4 with the corrections of docs/paper_notes.md.
+#pragma once
+
+#include "algorithms/factors/block_diagonal.h"
+#include "algorithms/factors/plan.h"
+#include "algorithms/kit/six.h"
+
+namespace delassus {
+
+template <class T> class Factor {
+ public:
+  /// The plan decides the matrix: made with Matrix::M it takes no weights. Both arguments must outlive this.
+  void analyze(const Structure& structure, const Plan& plan);
+  /// Numbers at a configuration, and phase A. Report: lost_pivot with the body's first degree of freedom.
+  [[nodiscard]] Report start(const Problem<T>& problem);
+  /// The rest of the factor of M_R; what start computed is kept, so that new weights cost no more than they must.
+  [[nodiscard]] Report update_weights(const BlockDiagonal<T>& weights);
+  /// The rest of the factor of M.
+  [[nodiscard]] Report update_undamped() { return eliminate(plan_->first_active, plan_->steps); }
+
+  /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
+  template <class V> void project(const V* x, V* y, V* work) const;
+
+  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of
+  /// freedom; τ = nullptr: zero.
+  void solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
+  /// τᵀ M_R⁻¹ τ, by the backward sweep alone; every joint active.
+  [[nodiscard]] T energy(const T* tau, T* work) const;
+
+  /// z with xᵀ J M⁻¹Jᵀ x' = Σ z_c z'_c / inverse_pivots()[c], c < columns(), by the backward sweep alone.
+  void half(const T* x, T* z, T* work) const;
+  /// 1/D of the columns that vectors visit, in the order of the sweeps.
+  [[nodiscard]] const T* inverse_pivots() const { return d_inverse_.data() + plan_->first_column[plan_->first_active]; }
+  [[nodiscard]] Index columns() const { return plan_->active_columns(); }
+
+  /// d_r ≥ (J M⁻¹Jᵀ)_rr, equal for rows on one body or joint, at most k times it and twice the mixed terms for k links: from
+  /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M, every joint
+  /// active. `omega` is scratch, one per body. Cost about 300 operations per body. Shape m.
+  void row_mobility(T* d, SixBySix<T>* omega) const;
+  /// d_j = (M⁻¹)_jj of every degree of freedom, in the problem's order, likewise. Shape n.
+  void joint_mobility(T* d, SixBySix<T>* omega) const;
+
+  [[nodiscard]] Index workspace() const;  ///< values of V
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  template <class> friend class FactorView;  // reads intermediate numbers: property_tests/digits.cpp
+
+  struct Attachment {  // one body of a link constraint
+    int step;          // from first_active
+    Index row, rows, first;
+  };
+  struct JointRows {
+    int step, column, dofs;  // from the first active step and column
+    Index row, rows, first, constraint;
+  };
+
+  void add_weights(const BlockDiagonal<T>& weights);
+  void add_link_weights(const BlockDiagonal<T>& weights, Index e, const Structure::LinkConstraint& c);
+  void add_joint_weights(const BlockDiagonal<T>& weights);
+  Report eliminate(int begin, int end);
+  bool eliminate(int i);
+  bool eliminate_simple(int i);
+  bool diagonalise(int i);
+  void update_members(int i);
+
+  template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
+  void add_torques(const T* tau, T* u) const;
+  Matrix6<T> mobility(int i, SixBySix<T>* omega) const;
+  void velocities(const T* u, T* nu) const;
+  template <class V> void backward(Six<V>* f, V* u) const;
+  template <class V> void forward(Six<V>* f, V* u) const;
+  template <class V> void gather(const Six<V>* f, const V* u, V* y) const;
+
+  const Structure* structure_ = nullptr;
+  const Plan* plan_ = nullptr;
+  bool started_ = false;  // no weights since start
+  // Everything below is in sweep order (steps, then their columns).
+  std::vector<Six<T>> s_;            // S_i E_i, per column
+  std::vector<T> d_inverse_;         // 1/D, per column
+  std::vector<Six<T>> e_;            // columns of E_i, six per joint of more than one degree of freedom
+  std::vector<int> e_of_;            // per step, −1: one degree of freedom or none
+  std::vector<Six<T>> w_;            // W_j D⁻¹, per step, member, column
+  std::vector<SixBySix<T>> inertia_; // H_ii while a step runs
+  std::vector<SixBySix<T>> block_;   // couplings H_ij
+  std::vector<SixBySix<T>> inertia0_;  // H_ii of the active steps after phase A, before weights
+  std::vector<Six<T>> s0_;             // S_i of the active steps
+  std::vector<T> armature_;
+  std::vector<Six<T>> k_;              // rows of the K_e^i
+  std::vector<T> joint_k0_, joint_k_;  // 𝒦_i and 𝒦_i E_i
+  std::vector<Six<T>> weighted_;       // scratch: R_e K_e^j
+  std::vector<Attachment> attachments_;
+  std::vector<JointRows> joint_rows_;   // ascending by step
+  std::vector<int> first_joint_rows_;   // per active step
+  std::vector<Matrix6<T>> joint_weight_;// 𝒦ᵢᵀ R 𝒦ᵢ of the steps in joint_weight_of_
+  std::vector<int> joint_weight_of_;    // per active step, −1: none
+};
+
+}  // namespace delassus

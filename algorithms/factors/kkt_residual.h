@@ -1,0 +1,49 @@
+// The residual of the constrained dynamics at (ν, λ), in twice the working precision and without any inverse.
+//
+// What     r₁ = r₁⁰ + Jᵀλ − M ν,   r₂ = r₂⁰ − J ν − R⁻¹ λ.
+//          From (0, a), both vanish exactly when λ = Λ_R a and ν = M⁻¹Jᵀλ; from a residual, what a correction leaves of it.
+// How      forward: a_i = a_π + S_i ν_i;  F_i = Σ K_eᵀλ_e − H_i a_i;  backward: F_π += F_i, r₁ = S_iᵀF_i + 𝒦ᵢᵀλ − A_i ν_i.
+//          (recursive Newton–Euler without bias terms). Everything is carried in V: in Wide<T> where r₁ and r₂ are small
+//          differences of large numbers, in T where ν and λ are small themselves.
+// Cost     about 24 n + 72 N + 24 per K row operations in V; O(n + m).
+// Error    eps² (V = Wide<T>) or eps (V = T) of the magnitudes that are added, then one rounding to T.
+// Source   the equations (2) of the paper; J. Luh, M. Walker, R. Paul 1980 (paper's [33]) for the recursion.
+#pragma once
+
+#include "algorithms/factors/block_diagonal.h"
+#include "algorithms/kit/wide.h"
+
+namespace delassus {
+
+template <class T> class KktResidual {
+ public:
+  void analyze(std::shared_ptr<const Structure> structure);
+  void update(const Problem<T>& problem);
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const;
+  void update_damping(const Damping<T>& damping) { damping_.assign(damping); }
+
+  /// r1 (n, in the problem's order of degrees of freedom) and r2 (m), from r1_0 (nullptr: 0) and r2_0, which they may
+  /// replace. V is Wide<T> or T. `work` needs workspace() scalars T.
+  template <class V>
+  void evaluate(const V* nu, const V* lambda, const T* r1_0, const T* r2_0, T* r1, T* r2, T* work) const;
+
+  [[nodiscard]] Index workspace() const;
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  template <class V> struct Buffers;
+  template <class V> void outward(const V* nu, Buffers<V>& b) const;
+  template <class V> void link_rows(const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const;
+  template <class V> void joint_rows(const V* nu, const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const;
+  template <class V> void inward(T* r1, Buffers<V>& b) const;
+
+  std::shared_ptr<const Structure> structure_;
+  std::vector<Index> body_of_;  // per degree of freedom
+  std::vector<Six<T>> s_, k_;
+  std::vector<SixBySix<T>> h_;
+  std::vector<T> armature_, joint_k_;
+  BlockDiagonal<T> damping_;  // R⁻¹
+};
+
+}  // namespace delassus

@@ -1,0 +1,221 @@
+// Refinement on the KKT residual, and its certificate: what every solve that keeps its promise of accuracy shares.
+//
+// What     from a correction (δν, δλ) ≈ solution of
+//            M δν − Jᵀδλ = r₁,   J δν + R⁻¹δλ = r₂                                                     (K)
+//          ν += δν, λ += δλ with the residual (r₁, r₂) of kkt_residual.h, until nothing is left to gain. Any solve of (K)
+//          serves: the inversion lemma, a QR factor, a dense one, one in float, one at another damping.
+// How      ν and λ are carried as Wide<T>. A correction measures the error before it: in the energy norm
+//            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to λᵀa,
+//          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
+//          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
+//          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that is below eps; where rows are
+//          hard, when moreover the correction itself is below 4 eps. The first correction is compared with the solution, and the
+//          largest force may hide the rows that converge slowly: it ends the steps only when it is itself below 4 eps, or when
+//          the certificate below leaves no row more than eps of the largest force, √R_rr B ≤ eps max|λ|. Those of a patient correction, which is fast in most
+//          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
+//          are divergence: not_converged. So is the last step allowed, unless no certificate is above 8 eps, and the last correction
+//          or what the certificate leaves a row, √R_rr B / max|λ|, is below 4 eps: then no step would add a digit.
+// Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
+//          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
+//          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
+//          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
+//          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. r₁ and r₂ are scaled by powers of two, each to a largest
+//          entry of about one, before they are squared; where even so a square is lost, error_bound is infinite.
+//          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
+//          B itself is evaluated to a relative eps κ, κ of M and of the blocks of R⁻¹ with unit diagonal.
+// Hard rows, R⁻¹ = 0: from (K), ‖δν‖²_M + ‖δλ‖²_{R⁻¹} ≤ r₁ᵀM⁻¹r₁ + r₂ᵀA⁻¹r₂ and ‖δλ‖_A ≤ B = √(r₁ᵀM⁻¹r₁) + √(r₂ᵀA⁻¹r₂). Whoever
+//          has a factor of A gives a bound on r₂ᵀA⁻¹r₂ (kkt_elimination.h). Nobody else has a bound: error_bound is −1, and
+//          an accuracy is reached when what further corrections would bring, judged by the last one, is below it.
+//          Rounding the iterate to T when it is returned adds up to eps √(|λ|ᵀ|A||λ|), more than eps where forces cancel.
+// Cost     per step one residual in Wide<T> and one solve of (K); at the end one residual in T and half a sweep.
+// Workspace  4 n + 7 m, the residual's or the correction's.
+// Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "algorithms/factors/factor.h"
+#include "algorithms/factors/kkt_residual.h"
+#include "algorithms/kit/columns.h"
+#include "algorithms/kit/vectors.h"
+
+namespace delassus {
+
+template <class T> class Refinement {
+ public:
+  using W = Wide<T>;
+
+  /// Who factors M for the certificate: this class, or whoever gives solve_with the energy.
+  enum class Mass : std::uint8_t { factored_here, factored_elsewhere };
+
+  void analyze(std::shared_ptr<const Structure> structure, Mass mass = Mass::factored_here);
+  void update(const Problem<T>& problem);
+  void update_damping(const Damping<T>& damping);
+
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const { residual_.numbers(to); }
+  /// R, or in what row it does not exist.
+  [[nodiscard]] const BlockDiagonal<T>& weights() const { return weights_; }
+  [[nodiscard]] const Report& invertible() const { return invertible_; }
+  /// Factors M where that is done here, once after an update: at the first call, which solve makes when a certificate is asked
+  /// for. Threads wait for the one that does it. Report: lost_pivot.
+  [[nodiscard]] Report factor_mass() const;
+  /// The factor of M, every joint active, after factor_mass.
+  [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
+
+  struct NoBound {
+    std::optional<T> operator()(const T*, T*) const { return std::nullopt; }
+  };
+  struct Steps {
+    int most;
+    bool patient = false;
+  };
+  /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
+  /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
+  /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
+  /// accuracy was not reached, with the iterate it came to; not_finite; lost_pivot of M. `at_rows(r2, scratch)`, asked where R⁻¹
+  /// has a zero, is a bound on r₂ᵀA⁻¹r₂, or none; scratch is m.
+  template <class Correct, class AtRows = NoBound>
+  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr,
+               const AtRows& at_rows = {}) const {
+    if (std::isfinite(wanted.error))
+      if (const Report factored = factor_mass(); !factored.ok()) return factored;
+    const auto energy = [this](const T* tau, T* rest) { return factor_M_.energy(tau, rest); };
+    return solve_with(a, f, wanted, steps, correct, energy, work, nu, at_rows);
+  }
+  /// The same with `energy(τ, work)` = τᵀM⁻¹τ.
+  template <class Correct, class Energy, class AtRows = NoBound>
+  Report solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
+                    T* nu = nullptr, const AtRows& at_rows = {}) const;
+
+  /// r₁ = Jᵀλ − M ν and r₂ = a − J ν − R⁻¹λ in T. Shapes n, m, m, n, m; `work` as for solve without its vectors.
+  void residual(const T* nu, const T* lambda, const T* a, T* r1, T* r2, T* work) const {
+    residual_.evaluate(nu, lambda, nullptr, a, r1, r2, work);
+  }
+  [[nodiscard]] Index workspace(Index of_correction) const;
+  [[nodiscard]] Index bytes() const;
+
+ private:
+  struct Buffers;
+  struct Progress {
+    double size = 1;      // of the last correction, relative: the error before it
+    double expected = 1;  // of the next one: the error now
+    double patient = 1;   // the same if corrections are slow in directions that this one does not show
+    double energy = 1, motion = 0, force = 0;  // of the last one: in the energy norm, max|δν|, max|δλ|
+  };
+  /// The certificate says so; where there is none, the last correction.
+  static bool enough(const Report& r, const Progress& now, double wanted) {
+    return r.error_bound >= 0 ? r.error_bound <= wanted : r.iterations > 0 && wanted > 0 && now.patient <= wanted;
+  }
+  /// B relative to the solution, −1: none; and √R_rr B of the row where it is largest, relative to the largest force.
+  struct Certificate {
+    double relative = -1, at_a_row = std::numeric_limits<double>::infinity();
+  };
+  /// Nothing left to gain.
+  static bool at_rounding(const Report& r, const Certificate& c) {
+    const bool correction = r.error_estimate >= 0 && r.error_estimate <= 4 * unit_roundoff<T>;
+    return r.error_bound <= 8 * unit_roundoff<T> && (correction || c.at_a_row <= 4 * unit_roundoff<T>);
+  }
+  /// Whether ρ, or what does not depend on it, was seen in all rows.
+  static bool shown(const Report& r, const Progress& now, const Certificate& c) {
+    return r.iterations != 1 || now.size <= 4 * unit_roundoff<T> || c.at_a_row <= unit_roundoff<T>;
+  }
+  Progress start(Buffers& b) const;
+  Progress advance(Buffers& b, const Progress& before) const;
+  /// Overwrites the correction.
+  template <class Energy, class AtRows> Certificate certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
+    const int of_r1 = scale(b.r1, b.d_nu, b.n), of_r2 = scale(b.r2, b.d_lambda, b.m);
+    const std::optional<T> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.d_lambda, b.scratch);
+    return rows ? bound(b, {energy(b.d_nu, b.rest), of_r1}, {*rows, of_r2}) : Certificate{};
+  }
+  /// to = 2^(−e) from, of a largest magnitude between ½ and 1. Returns e; 0 where the scalar is exact or all is zero.
+  static int scale(const T* from, T* to, Index n);
+  struct Square {
+    T value;
+    int exponent;  // of its root
+  };
+  std::optional<T> soft_rows(Buffers& b) const;
+  Certificate bound(const Buffers& b, const Square& motion, const Square& rows) const;
+
+  std::shared_ptr<const Structure> structure_;
+  KktResidual<T> residual_;
+  Mass mass_ = Mass::factored_here;
+  Plan plan_M_;
+  mutable Factor<T> factor_M_;
+  mutable Report factored_M_;
+  mutable std::atomic<bool> M_is_current_ = true;
+  mutable std::mutex factoring_M_;
+  BlockDiagonal<T> weights_;
+  Report invertible_;
+  double stiffest_ = 0;  // max √R_rr
+};
+
+// One column's vectors, zero up to their padded ends; Wide ones first, so that everything stays aligned.
+template <class T> struct Refinement<T>::Buffers {
+  static constexpr Index wide = static_cast<Index>(sizeof(W) / sizeof(T));
+  Index n, m;
+  W *nu, *lambda;
+  T *a, *f;  // the right-hand side; λ rounded to T
+  T *d_nu, *r1, *d_lambda, *r2, *scratch;
+  T* rest;
+
+  Buffers(const Structure& s, const T* rhs, T* work) : n(s.dofs()), m(s.rows) {
+    nu = reinterpret_cast<W*>(work);
+    lambda = reinterpret_cast<W*>(work += wide * padded(n));
+    T* const narrow_ones = work += wide * padded(m);
+    for (T** x : {&d_nu, &r1}) *x = work, work += padded(n);
+    for (T** x : {&a, &f, &d_lambda, &r2, &scratch}) *x = work, work += padded(m);
+    rest = work;
+    std::fill(narrow_ones, rest, T(0));
+    std::copy(rhs, rhs + m, a);
+    std::copy(rhs, rhs + m, r2);
+  }
+  static Index size(const Structure& s) { return (wide + 2) * padded(s.dofs()) + (wide + 5) * padded(s.rows); }
+};
+
+template <class T>
+template <class Correct, class Energy, class AtRows>
+Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
+                                 T* work, T* nu, const AtRows& at_rows) const {
+  Buffers b(*structure_, a, work);
+  correct(nullptr, b.r2, b.d_nu, b.d_lambda, b.rest);
+  Progress now = start(b), before = now;
+  Report report;
+  while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
+    const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
+    // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
+    if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
+    else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
+    Certificate certificate;
+    if (done || wanted.error > 0) {
+      certificate = certify(b, energy, at_rows);
+      report.error_bound = certificate.relative;
+    }
+    if ((done && shown(report, now, certificate)) || enough(report, now, wanted.error)) break;
+    if (done) residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
+    const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
+    if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
+      certificate = certify(b, energy, at_rows);
+      report.error_bound = certificate.relative;
+      if (wanted.error > 0 || !at_rounding(report, certificate)) report.status = Status::not_converged;
+      break;
+    }
+    correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
+    ++report.iterations;
+    before = now;
+    now = advance(b, before);
+    report.error_estimate = now.size;
+  }
+  if (!std::isfinite(now.size)) report.status = Status::not_finite;
+  if (report.ok() && report.error_bound > (wanted.error > 0 ? wanted.error : std::sqrt(unit_roundoff<T>))) report.status = Status::not_converged;
+  std::copy(b.f, b.f + b.m, f);
+  if (nu != nullptr)
+    for (Index c = 0; c < b.n; ++c) nu[c] = narrow<T>(b.nu[c]);
+  return report;
+}
+
+}  // namespace delassus

@@ -1,0 +1,243 @@
+// The two sweeps of Factor: y = J M_R⁻¹ Jᵀ x. Active steps only.
+#include "algorithms/factors/factor.h"
+#include "algorithms/kit/instantiate.h"
+
+namespace delassus {
+namespace {
+// V's from a buffer of V's: f of every active body, then u of every active column.
+template <class V> Six<V>* forces(V* work) { return reinterpret_cast<Six<V>*>(work); }
+}  // namespace
+
+// Alg. 1, lines 1–6: f_i = Σ K_e^iᵀ x_e, u_i = 𝒦ᵢᵀ x_i (in the basis of D).
+template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>* f, V* u) const {
+  for (int i = 0; i < plan_->active(); ++i) f[i] = Six<V>::zero();
+  for (int c = 0; c < plan_->active_columns(); ++c) u[c] = V{};
+  for (const Attachment& at : attachments_)
+    for (Index r = 0; r < at.rows; ++r) add_scaled(f[at.step], k_[at.first + r], x[at.row + r]);
+  for (const JointRows& j : joint_rows_)
+    for (Index r = 0; r < j.rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) u[j.column + c] += x[j.row + r] * joint_k_[j.first + r * j.dofs + c];
+}
+
+// u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹ u; u ← D⁻¹u      (Alg. 2, lines 2–6; Alg. 4, lines 13, 23, 31)
+template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) const {
+  const int a = plan_->first_active, column0 = plan_->first_column[a];
+  for (const Plan::Run& run : plan_->runs) {
+    if (run.simple && run.dofs == 1) {
+      for (int i = run.begin; i < run.end; ++i) {
+        const int c = plan_->first_column[i];
+        Six<V> fi = f[i - a];
+        V& uc = u[c - column0];
+        uc += dot(s_[c], fi);
+        subtract_scaled(fi, w_[plan_->first_w[i]], uc);
+        add(f[plan_->parent[i] - a], fi);
+        uc *= d_inverse_[c];
+      }
+      continue;
+    }
+    for (int i = run.begin; i < run.end; ++i) {
+      const int first = plan_->first_column[i];
+      V* const ui = u + first - column0;
+      for (int c = 0; c < run.dofs; ++c) ui[c] += dot(s_[first + c], f[i - a]);
+      if (plan_->parent[i] >= 0) add(f[plan_->parent[i] - a], f[i - a]);
+      const Six<T>* w = w_.data() + plan_->first_w[i];
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
+        for (int c = 0; c < run.dofs; ++c) subtract_scaled(f[plan_->members[k].step - a], *w++, ui[c]);
+      for (int c = 0; c < run.dofs; ++c) ui[c] *= d_inverse_[first + c];
+    }
+  }
+}
+
+// ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j; a_i = a_π + S_i ν      (Alg. 4, lines 33–37); a takes the place of f
+template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) const {
+  const int a = plan_->first_active, column0 = plan_->first_column[a];
+  for (auto run = plan_->runs.rbegin(); run != plan_->runs.rend(); ++run) {
+    if (run->simple && run->dofs == 1) {
+      for (int i = run->end; i-- > run->begin;) {
+        const int c = plan_->first_column[i];
+        Six<V> ai = f[plan_->parent[i] - a];
+        V& uc = u[c - column0];
+        uc -= dot(w_[plan_->first_w[i]], ai);
+        add_scaled(ai, s_[c], uc);
+        f[i - a] = ai;
+      }
+      continue;
+    }
+    for (int i = run->end; i-- > run->begin;) {
+      const int first = plan_->first_column[i];
+      V* const ui = u + first - column0;
+      const Six<T>* w = w_.data() + plan_->first_w[i];
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
+        for (int c = 0; c < run->dofs; ++c) ui[c] -= dot(*w++, f[plan_->members[k].step - a]);
+      Six<V> ai = plan_->parent[i] >= 0 ? f[plan_->parent[i] - a] : Six<V>::zero();
+      for (int c = 0; c < run->dofs; ++c) add_scaled(ai, s_[first + c], ui[c]);
+      f[i - a] = ai;
+    }
+  }
+}
+
+// Alg. 3, lines 4–8: y_e = Σ K_e^i a_i, y_i = 𝒦ᵢ ν_i.
+template <class T> template <class V> void Factor<T>::gather(const Six<V>* f, const V* u, V* y) const {
+  for (Index r = 0; r < structure_->rows; ++r) y[r] = V{};
+  for (const Attachment& at : attachments_) {
+    const Six<V> a = f[at.step];
+    Index r = 0;
+    for (; std::is_same_v<V, double> && r + 3 <= at.rows; r += 3) {  // three reductions at once
+      const Six<T>* const k = k_.data() + at.first + r;
+      const Six<V> p[4] = {product(k[0], a), product(k[1], a), product(k[2], a), Six<V>::zero()};
+      V sum[4];
+      sums(p, sum, 3);
+      for (Index s = 0; s < 3; ++s) y[at.row + r + s] += sum[s];
+    }
+    for (; r < at.rows; ++r) y[at.row + r] += dot(k_[at.first + r], a);
+  }
+  for (const JointRows& j : joint_rows_)
+    for (Index r = 0; r < j.rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) y[j.row + r] += u[j.column + c] * joint_k_[j.first + r * j.dofs + c];
+}
+
+template <class T> template <class V> void Factor<T>::project(const V* x, V* y, V* work) const {
+  Six<V>* const f = forces(work);
+  V* const u = work + plan_->active() * (sizeof(Six<V>) / sizeof(V));
+  scatter(x, f, u);
+  backward(f, u);
+  forward(f, u);
+  gather(f, u, y);
+}
+
+// u += Eᵀτ
+template <class T> void Factor<T>::add_torques(const T* tau, T* u) const {
+  for (int i = 0; i < plan_->steps; ++i) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    const T* const t = tau + structure_->first_dof[plan_->body[i]];
+    if (n == 1) u[first] += t[0];
+    if (n <= 1) continue;
+    const Six<T> of_joint = load(t, n);
+    const Six<T>* const e = e_.data() + e_of_[i];
+    for (int c = 0; c < n; ++c) u[first + c] += dot(e[c], of_joint);
+  }
+}
+
+// ν = E u
+template <class T> void Factor<T>::velocities(const T* u, T* nu) const {
+  for (int i = 0; i < plan_->steps; ++i) {
+    const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
+    T* const v = nu + structure_->first_dof[plan_->body[i]];
+    if (n == 1) v[0] = u[first];
+    if (n <= 1) continue;
+    const Six<T>* const e = e_.data() + e_of_[i];
+    Six<T> of_joint = scaled(e[0], u[first]);
+    for (int c = 1; c < n; ++c) add_scaled(of_joint, e[c], u[first + c]);
+    for (int c = 0; c < n; ++c) v[c] = of_joint[c];
+  }
+}
+
+template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  scatter(x, f, u);
+  if (tau != nullptr) add_torques(tau, u);
+  backward(f, u);
+  forward(f, u);
+  gather(f, u, y);
+  velocities(u, nu);
+}
+
+template <class T> T Factor<T>::energy(const T* tau, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  std::fill(f, f + plan_->active(), Six<T>::zero());
+  std::fill(u, u + plan_->active_columns(), T(0));
+  add_torques(tau, u);
+  backward(f, u);
+  T sum(0);  // Σ u² / D
+  for (int c = 0; c < plan_->active_columns(); ++c) sum += u[c] * u[c] / d_inverse_[c];
+  return sum;
+}
+
+template <class T> void Factor<T>::half(const T* x, T* z, T* work) const {
+  Six<T>* const f = forces(work);
+  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+  scatter(x, f, u);
+  backward(f, u);
+  std::copy(u, u + plan_->active_columns(), z);
+}
+
+// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ); of ν_i, in the basis of D:  D⁻¹ + Wᵀ Ω_π W
+template <class T> Matrix6<T> Factor<T>::mobility(int i, SixBySix<T>* omega) const {
+  const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first, p = plan_->parent[i];
+  const Six<T>* const w = w_.data() + plan_->first_w[i];
+  omega[i] = p < 0 ? SixBySix<T>::zero() : omega[p];
+  Matrix6<T> V = Matrix6<T>::Zero();
+  for (int c = 0; c < n; ++c) {
+    V(c, c) = d_inverse_[first + c];
+    if (p < 0) continue;
+    const Six<T> pushed = multiply(omega[p], w[c]);
+    subtract_outer(omega[i], s_[first + c], pushed);
+    subtract_outer(omega[i], pushed, s_[first + c]);
+    for (int e = 0; e < n; ++e) V(e, c) += dot(w[e], pushed);
+  }
+  for (int c = 0; c < n; ++c)
+    for (int e = 0; e < n; ++e) {
+      Six<T> scaled = s_[first + c];
+      scale(scaled, V(e, c));
+      add_outer(omega[i], s_[first + e], scaled);
+    }
+  return V;
+}
+
+// From the roots outwards.
+template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const {
+  const auto quadratic = [](const SixBySix<T>& X, const Six<T>& x) { return dot(x, multiply(X, x)); };
+  for (int i = plan_->steps; i-- > 0;) {
+    const int n = plan_->first_column[i + 1] - plan_->first_column[i];
+    const Matrix6<T> V = mobility(i, omega);
+    for (int j = first_joint_rows_[i]; j < first_joint_rows_[i + 1]; ++j)
+      for (Index r = 0; r < joint_rows_[j].rows; ++r) {
+        const T* const k = joint_k_.data() + joint_rows_[j].first + r * n;
+        T& of_row = d[joint_rows_[j].row + r] = T(0);
+        for (int c = 0; c < n; ++c)
+          for (int e = 0; e < n; ++e) of_row += k[c] * V(c, e) * k[e];
+      }
+  }
+  for (const auto& e : structure_->link_constraints)
+    for (Index r = 0; r < e.rows; ++r) {
+      d[e.row + r] = T(0);
+      for (const auto& link : e.links)
+        d[e.row + r] += T(static_cast<int>(e.links.size())) * quadratic(omega[plan_->step[link.body]], k_[link.first + r]);
+    }
+}
+
+// E V Eᵀ of every joint
+template <class T> void Factor<T>::joint_mobility(T* d, SixBySix<T>* omega) const {
+  for (int i = plan_->steps; i-- > 0;) {
+    const int n = plan_->first_column[i + 1] - plan_->first_column[i];
+    const Matrix6<T> V = mobility(i, omega);
+    T* const of_joint = d + structure_->first_dof[plan_->body[i]];
+    if (n == 1) of_joint[0] = V(0, 0);
+    if (n <= 1) continue;
+    const Six<T>* const E = e_.data() + e_of_[i];
+    for (int j = 0; j < n; ++j) {
+      of_joint[j] = T(0);
+      for (int c = 0; c < n; ++c)
+        for (int e = 0; e < n; ++e) of_joint[j] += E[c][j] * V(c, e) * E[e][j];
+    }
+  }
+}
+
+#define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy(const T*, T*) const; \
+  template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const; \
+  template void Factor<T>::joint_mobility(T*, SixBySix<T>*) const; template void Factor<T>::half(const T*, T*, T*) const;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+#ifdef DELASSUS_EXACT
+DELASSUS_INSTANTIATE(Stochastic)
+template void Factor<Stochastic>::scatter(const Stochastic*, Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::backward(Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::forward(Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::gather(const Six<Stochastic>*, const Stochastic*, Stochastic*) const;
+#else
+template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
+template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
+#endif
+
+}  // namespace delassus

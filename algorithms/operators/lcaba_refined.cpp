@@ -1,0 +1,55 @@
+#include "algorithms/kit/columns.h"
+#include "algorithms/kit/instantiate.h"
+#include "algorithms/operators/lcaba_refined.h"
+
+namespace delassus {
+
+template <class T> void LcabaRefined<T>::do_analyze() {
+  plan_ = make_plan(*this->structure(), Matrix::M_R, Branches::all);
+  factor_.analyze(*this->structure(), plan_);
+  refinement_.analyze(this->structure());
+}
+
+template <class T> Report LcabaRefined<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  undamped_ = factor_.start(problem);
+  refinement_.update(problem);
+  return do_update_damping(damping);
+}
+
+template <class T> Report LcabaRefined<T>::do_update_damping(const Damping<T>& damping) {
+  refinement_.update_damping(damping);
+  factored_ = undamped_;
+  if (factored_.ok()) factored_ = refinement_.invertible();
+  if (factored_.ok()) factored_ = factor_.update_weights(refinement_.weights());
+  return factored_;
+}
+
+// M_R δν = r₁ + JᵀR r₂;  δλ = R (r₂ − J δν)
+template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
+  T* const rate = work + factor_.workspace();
+  refinement_.weights().multiply(r2, d_lambda);
+  factor_.solve(d_lambda, r1, rate, d_nu, work);
+  for (Index r = 0; r < this->size(); ++r) rate[r] = r2[r] - rate[r];
+  refinement_.weights().multiply(rate, d_lambda);
+}
+
+template <class T>
+Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
+  if (!factored_.ok()) return factored_;
+  return refinement_.solve(a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
+}
+
+template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return solve_with_motion(a, f, nullptr, wanted, workspace);
+}
+
+template <class T> Index LcabaRefined<T>::do_workspace(Index) const {
+  return refinement_.workspace(factor_.workspace() + padded(this->size()));
+}
+
+template <class T> Index LcabaRefined<T>::do_bytes() const { return plan_.bytes() + factor_.bytes() + refinement_.bytes(); }
+
+#define DELASSUS_INSTANTIATE(T) template class LcabaRefined<T>;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+
+}  // namespace delassus

@@ -1,0 +1,126 @@
+// The table of operators. A row added here is tested, benchmarked, listed and documented.
+// Compiled twice: the library delassus makes operators in double and float; delassus_exact, which stands before it where it is
+// linked and then provides the table, makes them in every scalar.
+#include "algorithms/errors/closest.h"
+#include "algorithms/errors/message.h"
+#include "algorithms/kit/instantiate.h"
+#include "algorithms/operators/aba_sweep.h"
+#include "algorithms/operators/cg.h"
+#include "algorithms/operators/dense_cholesky.h"
+#include "algorithms/operators/kkt_elimination.h"
+#include "algorithms/operators/ladder.h"
+#include "algorithms/operators/lcaba.h"
+#include "algorithms/operators/lcaba_qr.h"
+#include "algorithms/operators/lcaba_refined.h"
+#include "algorithms/operators/proximal.h"
+
+namespace delassus {
+namespace {
+
+template <template <class> class Op, class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<Op<T>>(); }
+
+using Makers = decltype(OperatorRow::makers);
+#define DELASSUS_MAKER(T) std::get<Maker<T>>(all) = make<Op, T>;
+template <template <class> class Op> constexpr Makers makers_with_roots() {
+  Makers all{make<Op, double>, make<Op, float>, nullptr, nullptr, nullptr, nullptr};
+  DELASSUS_FOR_EACH_SCALAR_WITH_ROOTS(DELASSUS_MAKER)
+  return all;
+}
+template <template <class> class Op> constexpr Makers ordered_makers() {
+  Makers all = makers_with_roots<Op>();
+  DELASSUS_FOR_EACH_ORDERED_SCALAR(DELASSUS_MAKER)
+  return all;
+}
+template <template <class> class Op> constexpr Makers makers() {
+  Makers all = ordered_makers<Op>();
+  DELASSUS_FOR_EACH_SCALAR(DELASSUS_MAKER)
+  return all;
+}
+#undef DELASSUS_MAKER
+
+}  // namespace
+
+std::string_view name(ErrorClass e) {
+  switch (e) {
+    case ErrorClass::componentwise: return "componentwise";
+    case ErrorClass::normwise: return "normwise";
+    case ErrorClass::refined: return "refined";
+    case ErrorClass::amplified: return "amplified";
+  }
+  return "unknown";
+}
+
+const std::vector<OperatorRow>& operators() {
+  static const std::vector<OperatorRow> table = {
+      {.name = "dense_cholesky", .summary = "explicit matrix, three dense steps",
+       .formula = "A = (J L⁻ᵀ) D⁻¹ (J L⁻ᵀ)ᵀ + R⁻¹, M = L D Lᵀ", .source = "paper, section II",
+       .cost = "O(n³ + n² m + n m² + m³)", .applies = true, .solves = true, .zero_damping = true,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise,
+       .makers = makers<DenseCholesky>()},
+      {.name = "aba_sweep", .summary = "Delassus operator by two articulated-body sweeps",
+       .formula = "a = J M⁻¹ Jᵀ f + R⁻¹ f", .source = "paper, Algorithms 1–3 merged (section IV-D)",
+       .cost = "O(n + m)", .applies = true, .solves = false, .zero_damping = false, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::componentwise,
+       .makers = makers<AbaSweep>()},
+      {.name = "lcaba", .summary = "damped inverse by loop-constrained articulated-body sweeps",
+       .formula = "f = R a − R J (M + Jᵀ R J)⁻¹ Jᵀ R a", .source = "paper, Algorithm 4 and equation (9) merged (section V-D)",
+       .cost = "O(n + m) with local loops, O(n + m² d + m³) at worst", .applies = false, .solves = true,
+       .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
+       .solve_error = ErrorClass::amplified, .makers = makers<Lcaba>()},
+      {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate",
+       .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: algorithms/operators/lcaba_refined.h",
+       .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = makers<LcabaRefined>()},
+      {.name = "ladder", .summary = "the default: the cheapest rung that reaches the wanted accuracy",
+       .formula = "Λ_R a by lcaba_refined, lcaba_qr, proximal or kkt_elimination", .source = "algorithms/operators/ladder.h",
+       .cost = "that of the rungs climbed", .applies = false, .solves = true, .zero_damping = true,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .grows = true,
+       .makers = ordered_makers<Ladder>()},
+      {.name = "lcaba_qr", .summary = "square-root elimination: accurate however stiff or redundant the constraints",
+       .formula = "min ‖ν‖²_M + ‖a − J ν‖²_R, f read from its residual", .source = "algorithms/factors/square_root_factor.h",
+       .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = false, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = makers_with_roots<LcabaQr>()},
+      {.name = "lcaba_float", .summary = "lcaba in float with capped stiffness, refined in double",
+       .formula = "as lcaba_refined with R₀⁻¹ ≥ diag(d)/2¹³ in float", .source = "algorithms/operators/proximal.h",
+       .cost = "O((n + m) steps)", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .factor_eps = 0x1p-24,
+       .makers = {make<LcabaFloat, double>, nullptr, nullptr, nullptr, nullptr, nullptr}},
+      {.name = "proximal", .summary = "hard constraints by proximal iterations on lcaba",
+       .formula = "as lcaba_refined with R₀⁻¹ ≥ diag(d)/2²⁰", .source = "Rockafellar 1976; algorithms/operators/proximal.h",
+       .cost = "O((n + m) steps)", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .factor_eps = 0x1p-32,
+       .makers = makers_with_roots<Proximal>()},
+      {.name = "kkt_elimination", .summary = "multipliers kept to the end; finds the rank and names dependent rows",
+       .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/operators/kkt_elimination.h",
+       .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .decides_rank = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
+       .makers = ordered_makers<KktElimination>()},
+      {.name = "dense_refined", .summary = "the same for regular A: a dense factor with refinement and certificate",
+       .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/operators/kkt_elimination.h",
+       .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .makers = ordered_makers<DenseRefined>()},
+      {.name = "cg", .summary = "conjugate gradients on aba_sweep",
+       .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
+       .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .makers = ordered_makers<Cg>()},
+      {.name = "cg_preconditioned", .summary = "conjugate gradients preconditioned by lcaba in float",
+       .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952; algorithms/factors/capped_inverse.h",
+       .cost = "O((n + m) √κ(P A))", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise,
+       .factor_eps = 0x1p-24,
+       .makers = makers_with_roots<CgPreconditioned>()},
+  };
+  return table;
+}
+
+const OperatorRow& find_operator(std::string_view wanted) {
+  for (const OperatorRow& row : operators())
+    if (row.name == wanted) return row;
+  throw ModelError("", "operator", "there is no operator " + in_quotes(wanted), accepted_names(wanted, operators()) + "; `delassus list operators` says what each does");
+}
+
+}  // namespace delassus
