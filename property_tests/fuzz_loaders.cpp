@@ -3,7 +3,7 @@
 // the judge finds is printed, and the text is saved.
 //
 //   fuzz_loaders                          what the tests run: the corpus, the whole kinds, some thousand mutants
-//   fuzz_loaders --count 1000000          longer; other mutants with --seed
+//   fuzz_loaders --count 1000000          longer; other mutants with --seed; --share sdf=5 urdf=40 …
 //   fuzz_loaders FILE…                    judges these files only
 // Exit code 1 with a finding.
 #include <csignal>
@@ -12,6 +12,8 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <stdexcept>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "property_tests/fuzz_judge.h"
@@ -24,13 +26,23 @@ namespace {
 using namespace delassus;
 namespace fs = std::filesystem;
 
+const std::vector<std::string> formats{"urdf", "yaml", "json", "xml", "sdf"};
+
+/// What is wrong with an entry of --share.
+std::string format_and_weight(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return "is '" + text + "' (accepted: FORMAT=WEIGHT, as in sdf=5; a weight is a whole number)";
+  const std::string format = options::one_of(formats)(text.substr(0, equals)), weight = options::whole(0)(text.substr(equals + 1));
+  return !format.empty() ? format : weight.empty() && text.size() - equals > 5 ? "is '" + text + "' (accepted: weights up to 9999; only their ratios count)" : weight;
+}
+
 struct Options {
   std::int64_t count = 6000;
   std::int64_t seed = 1;
   double limit = 20;
   std::size_t findings = 20;
   std::string keep = ".", only, corpus = DELASSUS_LOADER_CORPUS;
-  std::vector<std::string> files;
+  std::vector<std::string> files, share;
   bool mutants_only = false;
 };
 
@@ -43,6 +55,14 @@ std::vector<FuzzText> files_as_texts(const std::vector<fs::path>& files) {
   std::vector<FuzzText> out;
   for (const fs::path& f : files) out.push_back({f.extension().string().substr(std::min<std::size_t>(1, f.extension().string().size())), read(f)});
   return out;
+}
+
+/// Ends the process after so much time of the processor (a busy machine is no hang), or after thirty times that on the clock.
+void limit_time(double seconds) {
+  const auto whole = static_cast<time_t>(seconds);
+  const itimerval t{{0, 0}, {whole, static_cast<suseconds_t>(1e6 * (seconds - static_cast<double>(whole)))}};
+  ::setitimer(ITIMER_PROF, &t, nullptr);
+  ::alarm(static_cast<unsigned>(30 * seconds) + (seconds > 0 ? 1 : 0));
 }
 
 struct Tally {
@@ -81,16 +101,16 @@ class Fuzz {
           for (std::int64_t i = first; i < end; ++i) {
             const FuzzText text = make(i);
             progress("B" + std::to_string(i) + "\n");
-            ::alarm(static_cast<unsigned>(o_.limit) + 1);
+            limit_time(o_.limit);
             const FuzzVerdict v = judge_text(text, folder_, static_cast<std::uint64_t>(i));
-            ::alarm(0);
+            limit_time(0);
             std::string line = v.finding;
             for (char& c : line) if (c == '\n') c = ' ';
             progress((v.loaded ? "L" : "R") + text.format + "\n" + (line.empty() ? "" : "F" + std::to_string(i) + " " + line + "\n"));
           }
           return std::string("E\n");
         },
-        o_.limit * 500);
+        o_.limit * 30 * 500);
     std::int64_t last = first;
     bool done = false;
     for (std::size_t at = 0; at < outcome.result.size();) {
@@ -109,7 +129,7 @@ class Fuzz {
     if (done && outcome.end == Outcome::End::returned) return end;
     FuzzText text = make(last);
     ++tally_[text.format].seen;
-    const bool hang = outcome.end == Outcome::End::timed_out || outcome.signal == SIGALRM;
+    const bool hang = outcome.end == Outcome::End::timed_out || outcome.signal == SIGPROF || outcome.signal == SIGALRM;
     keep(text, hang ? "no answer within the time limit" : delassus::describe(outcome) + (outcome.said.empty() ? "" : ": " + outcome.said.substr(0, 1500)));
     return last + 1;
   }
@@ -143,6 +163,33 @@ std::vector<FuzzText> chosen(const std::vector<FuzzText>& all, const std::string
   return out;
 }
 
+/// Which text the mutants start from: by the weights of --share, whole numbers; every text as often where there are none.
+class Starts {
+ public:
+  Starts(const std::vector<FuzzText>& texts, const std::vector<std::string>& share) : texts_(texts) {
+    std::map<std::string, std::int64_t> weights;
+    for (const std::string& s : share) weights[s.substr(0, s.find('='))] = std::stoll(s.substr(s.find('=') + 1));
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      if (weights.empty()) turns_.push_back({k});
+      if (!weights.empty() && (k == 0 || texts[k].format != texts[k - 1].format)) {
+        std::vector<std::size_t> same;
+        for (std::size_t i = k; i < texts.size() && texts[i].format == texts[k].format; ++i) same.push_back(i);
+        for (std::int64_t n = weights[texts[k].format]; n > 0; --n) turns_.push_back(same);
+      }
+    }
+    if (turns_.empty()) throw std::invalid_argument("--share leaves no text to start from; give a format a weight above 0");
+  }
+  [[nodiscard]] const FuzzText& of(std::int64_t i) const {
+    const auto n = static_cast<std::int64_t>(turns_.size());
+    const std::vector<std::size_t>& same = turns_[static_cast<std::size_t>(i % n)];
+    return texts_[same[static_cast<std::size_t>(i / n) % same.size()]];
+  }
+
+ private:
+  const std::vector<FuzzText>& texts_;
+  std::vector<std::vector<std::size_t>> turns_;
+};
+
 /// The sound texts must load, and in silence but for notes, or the judge would be deaf. A format may be left out of the build.
 bool sound(const std::vector<FuzzText>& texts, const std::string& folder) {
   bool all = true;
@@ -165,6 +212,7 @@ int fuzz(const Options& o) {
     fuzz.run("files", static_cast<std::int64_t>(given.size()), from(given));
   } else {
     const std::vector<FuzzText> texts = chosen(fuzz_texts(), o.only), corpus = files_as_texts(corpus_of(o));
+    const Starts starts(texts, o.share);
     const fs::path folder = fs::temp_directory_path() / ("fuzz_sound." + std::to_string(::getpid()));
     fs::create_directories(folder);
     prepare_fuzz_folder(folder);
@@ -180,7 +228,7 @@ int fuzz(const Options& o) {
     }
     fuzz.run("whole kinds", static_cast<std::int64_t>(kinds.size()), from(kinds));
     const auto mutant = [&](std::int64_t i) {
-      const FuzzText& t = texts[static_cast<std::size_t>(i) % texts.size()];
+      const FuzzText& t = starts.of(i);
       return FuzzText{t.format, mutated(t.text, static_cast<std::uint64_t>(o.seed) * 1000000007u + static_cast<std::uint64_t>(i))};
     };
     fuzz.run("mutants", o.count, mutant);
@@ -201,9 +249,11 @@ int main(int argc, char** argv) {
   Options o;
   app.add_option("--count", o.count, "mutants")->check(options::whole(0))->capture_default_str();
   app.add_option("--seed", o.seed, "of the mutants")->check(options::whole(0))->capture_default_str();
-  app.add_option("--limit", o.limit, "time for one text [s]")->check(options::above(0, "s"))->capture_default_str();
+  app.add_option("--limit", o.limit, "time of the processor for one text [s]")->check(options::above(0, "s"))->capture_default_str();
   app.add_option("--findings", o.findings, "stop after so many")->capture_default_str();
-  app.add_option("--only", o.only, "one format")->check(options::one_of({"urdf", "yaml", "json", "xml", "sdf"}));
+  app.add_option("--only", o.only, "one format")->check(options::one_of(formats));
+  app.add_option("--share", o.share, "how often each format is taken, as in urdf=40 yaml=20 json=10 xml=25 sdf=5; without: every text as often")
+      ->check(format_and_weight);
   app.add_flag("--mutants-only", o.mutants_only, "without the whole kinds, which are the same for every seed");
   app.add_option("--keep", o.keep, "folder for the texts of findings")->check(options::existing_directory())->capture_default_str();
   app.add_option("FILE", o.files, "judge these only")->check(options::existing_file());
