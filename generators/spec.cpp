@@ -1,6 +1,7 @@
 #include "generators/spec.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -54,7 +55,7 @@ class Reader {
  private:
   template <class T> T convert(const json& value, const char* key, const char* accepted) const {
     try {
-      if (std::is_integral_v<T> && !value.is_number_integer()) fail(std::string(key) + " is " + value.dump(), accepted);
+      if (!holds<T>(value)) fail(std::string(key) + " is " + value.dump(), accepted);
       const T out = value.get<T>();
       if (json(out) != value) fail(std::string(key) + " is " + value.dump(), accepted);  // 1.5 or a fourth entry would be dropped
       return out;
@@ -64,6 +65,17 @@ class Reader {
   }
   [[noreturn]] void fail(const std::string& problem, const std::string& accepted) const {
     throw ModelError(file_, element_, problem, accepted + "; specs are written by `delassus stress`");
+  }
+
+  /// Whether the numbers of a value are whole and in the range of T: the library converts others as C++ does, or not at all.
+  template <class T> static bool holds(const json& value) {
+    if constexpr (std::is_integral_v<T>) {
+      if (value.is_number_unsigned()) return std::in_range<T>(value.get<std::uint64_t>());
+      return value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>());
+    } else if constexpr (requires { requires std::is_integral_v<typename T::value_type>; } && !std::is_same_v<T, std::string>) {
+      return value.is_array() && std::all_of(value.begin(), value.end(), holds<typename T::value_type>);
+    }
+    return true;
   }
 
   json object_;

@@ -62,6 +62,20 @@ TEST(Generators, BadJsonIsRejectedByElement) {
   EXPECT_NE(error.find("bodies[0]"), std::string::npos) << error;
   EXPECT_NE(error.find("rotating"), std::string::npos) << error;
   EXPECT_NE(error.find("prismatic"), std::string::npos) << error;
+  // numbers that C++ would wrap round, cut, or convert to anything
+  const std::string sound = to_json(families()[0].make(2, 1));
+  const auto with = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = sound.find("\"" + key + "\":"), begin = sound.find_first_not_of(" \n", at + key.size() + 3);
+    const std::size_t end = sound[begin] == '[' ? sound.find(']', begin) + 1 : sound.find_first_of(",\n}", begin);
+    return std::string(sound).replace(begin, end - begin, value);
+  };
+  ASSERT_EQ(message(with("length_decade", "1")), "accepted");
+  for (const auto& [key, value] : {std::pair<std::string, std::string>{"seed", "-1"}, {"seed", "18446744073709551616"}, {"length_decade", "1e308"}, {"length_decade", "0.5"},
+                                   {"length_decade", "4294967296"}, {"dof", "1e19"}, {"axis", "[1e308, 0, 1]"}, {"axis", "[0, 0, 4294967297]"}, {"axis", "[0, 0, 1, 1]"}, {"axis", "1"}}) {
+    const std::string said = message(with(key, value));
+    EXPECT_NE(said.find(key + " is "), std::string::npos) << key << " " << value << ": " << said;
+    EXPECT_NE(said.find(key == "dof" ? "0 to 6" : "integer"), std::string::npos) << said;
+  }
 }
 
 TEST(Generators, BadSpecsAreRejected) {
