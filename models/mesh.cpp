@@ -191,13 +191,13 @@ class Hulls {
       return warn("mesh not found", m, "is not found: " + tried,
                   "without it this shape touches nothing; mesh_path: [folders] in the scene's robot entry says where packages are");
     const Read& r = read(file, m.part);
-    if (!r.problem.empty()) return warn("mesh not read", m, "cannot be read: " + r.problem, "without it this shape touches nothing");
+    if (!r.problem.empty()) return warn("mesh not read", m, "cannot be read: " + r.problem, "without it this shape touches nothing; write it anew as STL or OBJ, or give a primitive in its place");
     std::vector<V3> points;
     for (const V3& p : r.points) points.push_back(m.scale.cwiseProduct(p));
     try {
       place(m, convex_hull(points, most_));
     } catch (const std::runtime_error& e) {
-      warn("mesh not read", m, std::string("has no convex hull: ") + e.what(), "without it this shape touches nothing");
+      warn("mesh not read", m, std::string("has no convex hull: ") + e.what(), "without it this shape touches nothing; look for points far out, or give a primitive in its place");
     }
   }
 
@@ -220,7 +220,7 @@ class Hulls {
     ++cut_count_;
     if (hull.cut > margin_)
       warn("hull cut deeply", m, "has a hull of " + std::to_string(hull.all) + " vertices; the " + std::to_string(most_) + " kept cut it by up to " + number_text(hull.cut) + " m, more than the margin of contacts, " + number_text(margin_) + " m",
-           "hull_vertices: a larger number, in contacts");
+           "hull_vertices: a larger number, in contacts, keeps more");
     if (hull.cut >= deepest_) deepest_ = hull.cut, deepest_at_ = m.element;
   }
 

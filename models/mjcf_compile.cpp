@@ -98,6 +98,7 @@ CompiledMjcf compile_mjcf(const std::string& file) {
     refused = e.what();
   }
   if (!out.model && xml.empty()) throw ModelError(file, "MuJoCo", refused, accepted);
+  const MjcfSaid said = xml.said(refused);
   if (!out.model) {
     out.refused = refused;
     xml.respell_newer();
@@ -109,8 +110,8 @@ CompiledMjcf compile_mjcf(const std::string& file) {
       out.text = xml.text();
       compile(file, &out.text, out);
     } catch (const std::runtime_error& e) {
-      const bool same = refused == e.what();
-      throw ModelError(file, "MuJoCo", refused + (same ? "" : "; without visuals, sensors, actuators and missing files: " + std::string(e.what())), accepted);
+      const std::string again = same_complaint(refused, e.what()) ? "" : "; without visuals, sensors, actuators and missing files: " + std::string(e.what());
+      throw ModelError(file, said.element, said.text + again, said.to_do.empty() ? accepted : "finite numbers; " + said.to_do);
     }
   }
   out.full_inertia = xml.full_inertia();

@@ -81,6 +81,7 @@ void MjcfXml::include(Element* at, const std::string& folder, int depth) {
     tinyxml2::XMLDocument part;
     const std::string name = (fs::path(folder) / attribute(e, "file")).string();
     if (part.LoadFile(name.c_str()) != tinyxml2::XML_SUCCESS || part.RootElement() == nullptr) continue;
+    included_ = true;
     Element* root = part.RootElement()->DeepClone(&doc_)->ToElement();
     include(root, folder, depth + 1);
     tinyxml2::XMLNode* after = e;
@@ -158,6 +159,11 @@ std::string MjcfXml::text() const {
   tinyxml2::XMLPrinter printer;
   doc_.Print(&printer);
   return printer.CStr();
+}
+
+/// A line may be that of an included file.
+MjcfSaid MjcfXml::said(const std::string& message) const {
+  return included_ ? MjcfSaid{"MuJoCo", message, ""} : mjcf_said(doc_, message);
 }
 
 std::map<std::string, Matrix3<double>> MjcfXml::full_inertia() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algorithms/problem/problem.h"
+#include "models/mjcf_said.h"
 
 namespace delassus {
 
@@ -37,6 +38,8 @@ class MjcfXml {
   [[nodiscard]] bool fixed_inertia_lost() const { return fixed_inertia_lost_; }
   [[nodiscard]] const std::vector<SiteEquality>& site_equalities() const { return sites_; }
   [[nodiscard]] std::string text() const;
+  /// MuJoCo's message about the file as it was read.
+  [[nodiscard]] MjcfSaid said(const std::string& message) const;
   /// `fullinertia` of every named body whose inertia the file gives, axes of the body.
   [[nodiscard]] std::map<std::string, Matrix3<double>> full_inertia() const;
 
@@ -52,7 +55,7 @@ class MjcfXml {
   std::map<std::string, std::map<std::string, bool>> gone_;  ///< kind of asset → names
   std::vector<std::string> left_out_;
   std::vector<SiteEquality> sites_;
-  bool by_geoms_ = false, fixed_inertia_lost_ = false;
+  bool included_ = false, by_geoms_ = false, fixed_inertia_lost_ = false;
 };
 
 }  // namespace delassus

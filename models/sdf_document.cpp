@@ -5,8 +5,6 @@
 #ifdef DELASSUS_SDFORMAT
 
 #include <filesystem>
-#include <mutex>
-#include <sstream>
 
 #include <sdf/sdf.hh>
 
@@ -15,6 +13,7 @@
 #include "algorithms/errors/message.h"
 #include "models/mesh.h"
 #include "models/sdf_counts.h"
+#include "models/sdf_said.h"
 #include "models/sdf_text.h"
 #include "models/xml_lines.h"
 
@@ -30,47 +29,6 @@ Pose<double> pose_of(const ignition::math::Pose3d& p) {
   return {Eigen::Quaterniond(p.Rot().W(), p.Rot().X(), p.Rot().Y(), p.Rot().Z()).normalized().toRotationMatrix(), vector(p.Pos())};
 }
 
-/// What libsdformat prints, kept. Its console is global: one file at a time.
-class Listener {
- public:
-  Listener() : lock_(mutex()) { stream().SetStream(&text_); }
-  ~Listener() { stream().SetStream(&std::cerr); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  /// One entry per message, without colours and source lines.
-  [[nodiscard]] std::vector<std::string> messages() const {
-    std::vector<std::string> out;
-    std::string plain;
-    bool escape = false;
-    for (const char c : text_.str()) {
-      if (c == '\x1b') escape = true;
-      if (!escape) plain += c;
-      if (escape && c == 'm') escape = false;
-    }
-    std::istringstream lines(plain);
-    for (std::string line; std::getline(lines, line);) {
-      const bool begins = line.rfind("Warning [", 0) == 0 || line.rfind("Error [", 0) == 0 || line.rfind("Error Code", 0) == 0;
-      const std::size_t source = line.find("] ");
-      if (begins && source != std::string::npos) line = line.substr(source + 2);
-      const std::size_t first = line.find_first_not_of(" \t");
-      if (first == std::string::npos) continue;
-      if (begins || out.empty()) out.push_back(line.substr(first));
-      else out.back() += " " + line.substr(first);
-    }
-    return out;
-  }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  static sdf::Console::ConsoleStream& stream() { return sdf::Console::Instance()->GetMsgStream(); }
-  std::lock_guard<std::mutex> lock_;
-  std::ostringstream text_;
-};
-
 class SdfReader {
  public:
   SdfReader(const RobotOptions& options, Findings& findings) : options_(options), findings_(findings), lines_(options.file) {}
@@ -80,14 +38,14 @@ class SdfReader {
     if (document.LoadFile(options_.file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) fail("file", "is no XML", "an SDF file; correct what an XML checker says of it");
     check_sdf_numbers(options_.file, *document.RootElement());
     leave_out_of_sdf(*document.RootElement());
+    check_sdf_words(options_.file, *document.RootElement());
     check_counts(options_.file, *document.RootElement(), findings_);
-    tinyxml2::XMLPrinter printer(nullptr, true);
-    document.Print(&printer);
-    const Listener listener;
-    load(printer.CStr());
-    for (const std::string& text : listener.messages()) {
-      std::string advice = "see what it says";
-      findings_.warn("said by libsdformat", options_.file, "<sdf>", text, advice);
+    const std::string text = text_on_its_lines(document);
+    const SdfConsole console;
+    load(text, console, *document.RootElement());
+    for (const std::string& printed : console.messages()) {
+      const SdfSaid said = sdf_said(printed);
+      findings_.warn("said by libsdformat", options_.file, said.element, said.text, "see what it says");
     }
     std::vector<const sdf::Model*> models;
     if (root_.Model() != nullptr) models.push_back(root_.Model());
@@ -103,7 +61,7 @@ class SdfReader {
     throw ModelError(options_.file, element, problem, accepted);
   }
 
-  void load(const std::string& text) {
+  void load(const std::string& text, const SdfConsole& console, const tinyxml2::XMLElement& document) {
     sdf::ParserConfig config;
     config.SetFindCallback([&](const std::string& uri) {
       std::string tried;
@@ -111,21 +69,21 @@ class SdfReader {
       if (found.empty()) found = folder_of(uri);
       return found;
     });
-    sdf::Errors errors;
-    std::string thrown;
+    sdf::Errors errors, fatal;
     try {
       errors = root_.LoadSdfString(text, config);
     } catch (const std::exception& e) {
-      thrown = e.what();
+      fatal.emplace_back(sdf::ErrorCode::NONE, e.what());
     }
-    std::string fatal = thrown;
     for (const sdf::Error& e : errors) {
       if (e.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) continue;  // judged like those of all readers
       if (e.Code() == sdf::ErrorCode::URI_LOOKUP || e.Code() == sdf::ErrorCode::URI_INVALID)
-        findings_.warn("include not found", options_.file, "<include>", e.Message(), "what it holds is not in the model; mesh_path: [folders] in the scene's robot entry says where models are");
-      else if (fatal.size() < 1000) fatal += (fatal.empty() ? "" : "; ") + e.Message();
+        findings_.warn("include not found", options_.file, "<include>" + in_line(e.LineNumber().value_or(0)), e.Message(), "what it holds is not in the model; mesh_path: [folders] in the scene's robot entry says where models are");
+      else fatal.push_back(e);
     }
-    if (!fatal.empty()) fail("<sdf>", "libsdformat: " + fatal, "an SDF file that libsdformat " + std::string(SDF_VERSION_FULL) + " reads; correct what it says, or give the robot as URDF");
+    if (fatal.empty()) return;
+    const SdfSaid said = sdf_said(fatal, console.messages(), lines_, document);
+    fail(said.element, said.text, "an SDF file that libsdformat " + std::string(SDF_VERSION_FULL) + " reads; correct what it says, or give the robot as URDF");
   }
 
   /// The folder a model://name stands for, "" when there is none.

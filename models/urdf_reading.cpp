@@ -2,11 +2,10 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <mutex>
-
 #include <Eigen/Geometry>
 
 #include "algorithms/errors/message.h"
+#include "models/library_console.h"
 #include "models/urdf_check.h"
 
 namespace delassus {
@@ -15,7 +14,7 @@ namespace {
 /// Collects what urdfdom says instead of printing it. console_bridge is global: one parse at a time.
 class Listener : public console_bridge::OutputHandler {
  public:
-  Listener() : lock_(mutex()), level_(console_bridge::getLogLevel()) {
+  Listener() : lock_(library_console()), level_(console_bridge::getLogLevel()) {
     console_bridge::useOutputHandler(this);
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_WARN);
   }
@@ -31,10 +30,6 @@ class Listener : public console_bridge::OutputHandler {
   std::vector<std::string> errors, warnings;
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
   std::lock_guard<std::mutex> lock_;
   console_bridge::LogLevel level_;
 };

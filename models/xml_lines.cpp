@@ -2,6 +2,7 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "algorithms/errors/message.h"
@@ -18,19 +19,26 @@ XmlLines::XmlLines(const std::string& file) {
     for (const tinyxml2::XMLElement* c = e->FirstChildElement(); c; c = c->NextSiblingElement()) stack.push_back(c);
     const char* const name = e->Attribute("name");
     if (name == nullptr) continue;
-    const auto [it, first] = line_.try_emplace({e->Name(), name}, e->GetLineNum());
-    if (!first) it->second = 0;
+    lines_[{e->Name(), name}].push_back(e->GetLineNum());
   }
 }
 
-int XmlLines::line(const std::string& kind, const std::string& name) const {
-  if (const auto it = line_.find({kind, name}); it != line_.end()) return it->second;
+std::vector<int> XmlLines::lines(const std::string& kind, const std::string& name) const {
+  if (const auto it = lines_.find({kind, name}); it != lines_.end()) return it->second;
   const std::size_t scope = name.rfind("::");
-  return scope == std::string::npos ? 0 : line(kind, name.substr(scope + 2));
+  return scope == std::string::npos ? std::vector<int>{} : lines(kind, name.substr(scope + 2));
+}
+
+int XmlLines::line(const std::string& kind, const std::string& name) const {
+  const std::vector<int> all = lines(kind, name);
+  return all.size() == 1 ? all.front() : 0;
 }
 
 std::string XmlLines::element(const std::string& kind, const std::string& name) const {
-  return kind + " " + in_quotes(name) + in_line(line(kind, name));
+  std::vector<int> all = lines(kind, name);
+  std::sort(all.begin(), all.end());
+  const std::string two = all.size() == 2 ? " (line " + std::to_string(all[0]) + " or " + std::to_string(all[1]) + ")" : "";
+  return kind + " " + in_quotes(name) + (two.empty() ? in_line(line(kind, name)) : two);
 }
 
 }  // namespace delassus

@@ -67,19 +67,19 @@ template <class T> bool right(const MatrixX<T>& B, T* scratch) {
 template <class T> void check_block(const MatrixX<T>& B, const std::string& element) {
   if (B.rows() != B.cols() || B.rows() == 0)
     throw ModelError("", element, "matrix of " + std::to_string(B.rows()) + " x " + std::to_string(B.cols()),
-                     "a square matrix");
+                     "a square matrix; give the block of R^-1 of its rows");
   for (Index i = 0; i < B.rows(); ++i)
     for (Index j = 0; j < B.cols(); ++j)
-      if (!finite(B(i, j))) throw ModelError("", element, "entry is not finite", "finite numbers [1/kg]");
+      if (!finite(B(i, j))) throw ModelError("", element, "entry is not finite", "finite numbers [1/kg]; correct it");
   for (Index i = 0; i < B.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (!(B(i, j) == B(j, i)))
         throw ModelError("", element,
                          "entries (" + std::to_string(i) + "," + std::to_string(j) + ") and their transpose differ",
-                         "a symmetric matrix");
+                         "a symmetric matrix; where only rounding differs, give half the sum with its transpose");
   MatrixX<T> left = B;
   if (!positive_semidefinite(Eigen::Map<MatrixX<T>>(left.data(), B.rows(), B.cols())))
-    throw ModelError("", element, "matrix has a negative eigenvalue", "positive semidefinite [1/kg]");
+    throw ModelError("", element, "matrix has a negative eigenvalue", "positive semidefinite [1/kg]; check its signs");
 }
 
 /// For each row the first row of its constraint and that constraint's size.
@@ -155,11 +155,11 @@ template <class T> Report Damping<T>::judged(std::vector<T>& scratch) const {
 template <class T> void Damping<T>::validate(const Structure& s) const {
   if (static_cast<Index>(diagonal.size()) != s.rows)
     throw ModelError("", "damping", std::to_string(diagonal.size()) + " entries",
-                     std::to_string(s.rows) + ", one per row");
+                     std::to_string(s.rows) + ", one per row; give R^-1 of every row");
   for (Index i = 0; i < s.rows; ++i)
     if (!finite(diagonal[i]) || diagonal[i] < T(0))
       throw ModelError("", "damping of row " + std::to_string(i),
-                       number_text(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]");
+                       number_text(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]; 0 makes a hard row");
   if (blocks.empty()) return;
   const auto owner = row_owners(s);
   Index next = 0;
@@ -167,14 +167,14 @@ template <class T> void Damping<T>::validate(const Structure& s) const {
     const std::string element = "damping block at row " + std::to_string(b.row);
     check_block(b.R_inverse, element);
     const Index size = b.R_inverse.rows();
-    if (b.row < next) throw ModelError("", element, "overlaps the block before it", "disjoint blocks in ascending order");
+    if (b.row < next) throw ModelError("", element, "overlaps the block before it", "disjoint blocks in ascending order; sort them by row, join those that overlap");
     next = b.row + size;
     if (next > s.rows || next > owner[b.row].first + owner[b.row].second)
       throw ModelError("", element, std::to_string(size) + " rows reach beyond one constraint",
-                       "a block over rows of one constraint");
+                       "a block over rows of one constraint; split it");
     for (Index i = b.row; i < next; ++i)
       if (!(diagonal[i] == T(0)))
-        throw ModelError("", element, "row " + std::to_string(i) + " also has a diagonal entry", "0 there");
+        throw ModelError("", element, "row " + std::to_string(i) + " also has a diagonal entry", "0 there; put all of a block into the block");
   }
 }
 

@@ -214,6 +214,7 @@ TEST(Meshes, are_read_only_for_contacts) {
   const Scene s = scene_with("lazy", mesh_of_cube, "detect");
   ASSERT_EQ(s.warnings.size(), 1u);
   EXPECT_EQ(s.warnings[0].kind, "mesh not read");
+  EXPECT_NE(s.warnings[0].text.find("write it anew as STL or OBJ"), std::string::npos) << s.warnings[0].text;
   EXPECT_TRUE(s.model.constraints.empty());
   const Scene lost = scene_with("lost", "<collision><geometry><mesh filename='package://elsewhere/x.stl'/></geometry></collision>", "detect");
   ASSERT_EQ(lost.warnings.size(), 1u);

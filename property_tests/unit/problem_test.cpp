@@ -22,7 +22,9 @@ std::string refusal(const std::function<void()>& action) {
 void expect_refusal(const std::function<void()>& action, const std::string& part) {
   const std::string message = refusal(action);
   EXPECT_NE(message.find(part), std::string::npos) << "message: '" << message << "', expected: '" << part << "'";
-  EXPECT_NE(message.find("(accepted: "), std::string::npos) << message;
+  const std::size_t accepted = message.find("(accepted: ");
+  ASSERT_NE(accepted, std::string::npos) << message;
+  EXPECT_NE(message.find("; ", accepted), std::string::npos) << "does not say what to do: " << message;
 }
 
 /// Three bodies 0 ← 1, 0 ← 2 with 6, 1 and 2 degrees of freedom; one constraint of each sort.

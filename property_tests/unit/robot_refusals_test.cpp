@@ -118,10 +118,35 @@ TEST(RobotRefusals, sdf) {
             "one for the parent", "check <gearbox_reference_body>"},
            {"<sdf version='1.9'><model name='m'>\n<link name='a'>\n<collision name='c'><geometry><sphere><radius>-0.25</radius></sphere></geometry></collision></link></model></sdf>", 2, "-0.25",
             "", ""},
+           {sdf(sdf_joint("revolut", "a", "b", z)), 4, "joint \"j_revolut\" (line 4): type \"revolut\" is none of SDF", "did you mean revolute? ball, ", "correct the type"},
+           {sdf(sdf_joint("revolute", "a", "b", "\n<axis><xyz>0 0 0</xyz></axis>")), 5, "<xyz> (line 5): \"0 0 0\" is no direction", "a vector that is not 0", "give the axis"},
+           {"<sdf version='1.9'><model name='m'>\n<link name='a::b'/></model></sdf>", 2, "link \"a::b\" (line 2)", "names without ::", "rename it"},
+           {sdf(sdf_joint("revolute", "a", "zz", z)), 4, "joint \"j_revolute\" (line 4): libsdformat: Child frame with name[zz]", "an SDF file that libsdformat", "correct what it says"},
+           {sdf("<joint name='j' type='ball'>\n<child>b</child></joint>"), 4, "joint \"j\" (line 4): has no <parent>", "a <parent> and a <child>", "write the link's name"},
+           {sdf("<static>maybe</static>"), 4, "<static> (line 4): \"maybe\"; libsdformat: ", "an SDF file that libsdformat", "correct what it says"},
+           {sdf("<link name='a'/>"), 2, "link \"a\" (line 2 or 4): libsdformat: link with name[a] already exists", "an SDF file that libsdformat", "correct what it says"},
+           {sdf("<frame name='f' attached_to='g'/>\n<frame name='g' attached_to='f'/>"), 4, "frame \"m::f\" (line 4): libsdformat: FrameAttachedToGraph cycle", "an SDF file that libsdformat", "correct what it says"},
            {sdf(turning), 0, "\"j_revolut\" does not exist", "did you mean j_revolute? ", "`delassus describe FILE`", ",\n     armature: {j_revolut: 1}", 3},
            {sdf(turning + sdf_joint("ball", "a", "b", "")), 0, "\"j_ball\" closes a loop", "a moving joint", "leave this one out", ", armature: {j_ball: 1}"},
            {sdf(turning), 0, "SDF states the types", "no joint_types", "change <joint type>", ",\n     joint_types: {j_revolute: spherical}", 3}})
     expect_parts("robot.sdf", r);
+  const std::string file = written("robot.sdf", sdf("<static>maybe</static>"));
+  testing::internal::CaptureStderr();
+  static_cast<void>(message_of([&] { (void)load_robot(file); }));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "libraries print beside the message";
+}
+
+TEST(RobotRefusals, sdf_warnings_have_lines) {
+  if (!is_read("robot.sdf", sdf(""), "libsdformat-dev")) GTEST_SKIP() << "built without libsdformat";
+  const Scene scene = load_robot(written("robot.sdf", sdf("\n<frame name='f' colour='3'/>")));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].text.find("frame \"f\" (line 5): XML Attribute[colour]"), std::string::npos) << scene.warnings[0].text;
+}
+
+TEST(RobotRefusals, axes_of_fixed_joints_are_nothing_to_refuse) {
+  if (!is_read("robot.sdf", sdf(""), "libsdformat-dev")) GTEST_SKIP() << "built without libsdformat";
+  for (const std::string axis : {"0 0 0", "nan 0 0", "x"})
+    EXPECT_EQ(message_of([&] { (void)load_robot(written("robot.sdf", sdf(sdf_joint("fixed", "a", "b", "<axis><xyz>" + axis + "</xyz></axis>")))); }), "");
 }
 
 TEST(RobotRefusals, mjcf) {
@@ -130,6 +155,15 @@ TEST(RobotRefusals, mjcf) {
   const std::string keys = "<keyframe><key name='home' qpos='1'/></keyframe>", mesh = "<asset><mesh name='m' file='none.stl'/></asset>\n<worldbody>\n<body name='a'>";
   for (const Refusal& r : std::vector<Refusal>{
            {"<mujoco>\n<worldbody>\n<bdy/></worldbody></mujoco>", 3, "unrecognized element", "a file that MuJoCo", "give the robot as URDF"},
+           {"<mujoco>\n<worldbody>\n<body name='b'><joint/>\n<inertial pos='0 0 0' mass='1e999' diaginertia='1 1 1'/></body></worldbody></mujoco>", 4,
+            "<inertial> (line 4): mass \"1e999\" is beyond the range of double", "finite numbers", "check the exponent"},
+           {"<mujoco>\n<worldbody>\n<body name='b' pos='0 1,5 0'><joint/><geom size='1'/></body></worldbody></mujoco>", 3,
+            "body \"b\" (line 3): pos \"0 1,5 0\": \"1,5\" is no number", "finite numbers", "decimal point"},
+           {"<mujoco>\n<worldbody>\n<body name='b'><joint/>\n<inertial pos='0 0' mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>", 4,
+            "<inertial> (line 4): pos \"0 0\"; MuJoCo: ", "a file that MuJoCo", "correct what it says"},
+           {"<mujoco>\n<worldbody>\n<body name='b'><joint/>\n<inertial pos='0 0 0' mass='-1' diaginertia='1 1 1'/></body></worldbody></mujoco>", 3,
+            "its <inertial> (line 4) has pos \"0 0 0\" mass \"-1\"", "a file that MuJoCo", "correct what it says"},
+           {tree + "<equality>\n<connect body1='a' body2='c' anchor='0 0 0'/></equality></mujoco>", 7, "unknown element 'c'", "a file that MuJoCo", "correct what it says"},
            {"\n<mujocoinclude/>", 2, "<mujocoinclude>", "<mujoco> (MJCF)", "a scene of robots"},
            {"<mujoco>\n" + mesh + "<joint/>\n<geom type='mesh' mesh='m'/></body></worldbody></mujoco>", 5, "mesh \"m\" (line 5)", "the file in its place", "<inertial>"},
            {"<mujoco>\n" + mesh + "\n<geom type='mesh' mesh='m'/></body></worldbody></mujoco>", 4, "body \"a\" (line 4)", "the files in their places", "base: fixed", ", base: free"},
