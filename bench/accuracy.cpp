@@ -186,12 +186,13 @@ Table measure(const Subject& subject, const std::vector<Rung>& rungs, const Opti
                                                       : consistent_acceleration(subject.problem, options.seed);
   std::set<std::string> too_slow;
   for (const double d : options.dampings) {
+    if (options.stop && options.stop()) break;
     const Damping<double> damping = d == own_damping ? subject.damping : Damping<double>::uniform(subject.rows(), d);
     const Truth truth(subject.problem, damping, a);
     Level level{d, truth.largest_eigenvalue(), truth.condition(), truth.bound(), truth.disagreement(), truth.why_not(), {}};
     const Question question{subject.problem, damping, a, truth, options};
     for (const Rung& rung : rungs) {
-      if (too_slow.count(rung.name)) continue;
+      if (too_slow.count(rung.name) || (options.stop && options.stop())) continue;
       const auto start = std::chrono::steady_clock::now();
       level.cells.push_back(measure(rung, subject, question));
       if (rung.name != default_rung && bench::seconds_since(start) > options.longest + 4 * options.budget) too_slow.insert(rung.name);

@@ -73,6 +73,7 @@ struct Options {
   bool random_right_side = false; ///< instead of a = J ν
   std::uint64_t seed = 1;
   double budget = 0.01;           ///< seconds of timing per phase; 0: no times, no operations
+  std::function<bool()> stop = {};///< looked at before every rung; what follows is left out
   double longest = 0.5;           ///< a rung whose update and solve take longer [s] is left out at further dampings
 };
 

@@ -17,6 +17,7 @@ class Walk {
       : options_(o), campaign_(c), progress_(progress) {}
 
   template <class Open> void step(std::vector<Table>& to, const std::string& what, const Options& options, Open&& open) {
+    if (options.stop && options.stop()) return leave_out(what, "interrupted");
     if (bench::seconds_since(start_) > options_.seconds) return leave_out(what, "time was up");
     const Subject subject = open();
     if (subject.rows() == 0) return leave_out(what, "no rows");
@@ -45,9 +46,10 @@ Campaign run_campaign(const CampaignOptions& o, const std::function<void(const s
   Options untimed = o.timed;
   untimed.budget = 0;
   untimed.dampings = {own_damping};
-  for (const auto& family : generators::families())
-    walk.step(c.families, std::string(family.name), untimed,
-              [&] { return subject_of(family.name, middle_size(family.name), o.timed.seed, 0); });
+  if (o.with_families)
+    for (const auto& family : generators::families())
+      walk.step(c.families, std::string(family.name), untimed,
+                [&] { return subject_of(family.name, middle_size(family.name), o.timed.seed, 0); });
   const std::vector<std::string> scenes = o.scenes.empty() ? scene_names() : o.scenes;
   for (const std::string& scene : scenes) walk.step(c.here, scene, o.timed, [&] { return subject_of(open_scene(scene), 0); });
   untimed.dampings = dampings_up_to(1e-2);

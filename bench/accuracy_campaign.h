@@ -18,6 +18,7 @@ struct CampaignOptions {
   Options timed;                     ///< of `here`; `away` is measured at its dampings up to 1e-2
   bool with_away = true;
   double seconds = 1200;             ///< what has not begun by then is left out
+  bool with_families = true;
 };
 
 /// `progress` is called with a line of text per table. @throws ModelError for an unknown scene.

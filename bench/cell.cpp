@@ -38,6 +38,8 @@ class Stand {
     if (row_.solves) {
       cell.time.solve = stopwatch([&] { report = op_->solve(in, out, workspace); }, limits.budget);
       cell.solve_status = std::string(name(report.status));
+      if (row_.solve_error == ErrorClass::refined)
+        cell.time.unrefined = stopwatch([&] { static_cast<void>(op_->solve(in, out, Accuracy::fastest(), workspace)); }, limits.budget);
     }
     bool odd = false;  // two dampings in turn, so that no call finds the numbers it already has
     cell.time.new_damping =

@@ -52,9 +52,10 @@ std::vector<Index> ladder_sizes(Index largest) {
 }
 
 std::vector<Rung> climb(const std::vector<Index>& links, const Limits& limits, double longest, double most_bytes,
-                        const std::function<void(const std::string&)>& progress) {
+                        const std::function<void(const std::string&)>& progress, const std::function<bool()>& stop) {
   std::vector<Rung> rungs;
   for (const Index n : links) {
+    if (stop && stop()) break;
     const Scene scene = swimmer(n);
     const Problem<double> problem = problem_of(scene);
     Rung rung{n, problem.structure->dofs(), problem.structure->rows,

@@ -9,9 +9,10 @@ namespace delassus::bench {
 
 /// Measures every operator at every size, ascending. An operator is left out from the first size at which one of its
 /// phases would take longer than `longest` seconds or its memory exceed `most_bytes`, extrapolated from the growth
-/// between its last two sizes; the cell says so. `progress` is called with a line of text per size.
+/// between its last two sizes; the cell says so. `progress` is called with a line of text per size; `stop` is asked before each.
 [[nodiscard]] std::vector<Rung> climb(const std::vector<Index>& links, const Limits& limits, double longest,
-                                      double most_bytes, const std::function<void(const std::string&)>& progress);
+                                      double most_bytes, const std::function<void(const std::string&)>& progress,
+                                      const std::function<bool()>& stop = {});
 
 /// 3, 10, 30, … up to and including `largest`.
 [[nodiscard]] std::vector<Index> ladder_sizes(Index largest);

@@ -1,8 +1,10 @@
 #include "bench/page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "bench/accuracy.h"
 #include "bench/text.h"
 
 namespace delassus::bench {
@@ -11,15 +13,24 @@ std::string verdict_cell(const Cell& cell) {
   const LawResult* worst = cell.worst();
   if (!worst) return "<td class=\"soft\">–</td>";
   const bool good = cell.failed() == 0;
+  const std::string some = cell.left_out() == 0 ? "" : format(" <small>%d/%d</small>", cell.checked(), cell.checked() + cell.left_out());
+  if (good && !cell.against_definition())
+    return "<td class=\"soft\" title=\"laws of identical bits alone: too large for the others\">" + format("%d of bits", cell.checked()) + "</td>";
   return std::string("<td class=\"") + (good ? "good" : "bad") + "\" title=\"" +
-         escape(format("%d laws checked; worst: ", cell.checked()) + worst->law) + "\">" + (good ? "✓ " : "✗ ") +
-         escape(ratio_text(worst->ratio)) + "</td>";
+         escape(format("%d laws checked, %d left out; worst: ", cell.checked(), cell.left_out()) + worst->law) + "\">" + (good ? "✓ " : "✗ ") +
+         escape(ratio_text(worst->ratio)) + some + "</td>";
 }
 
 std::string time_cell(const Timing& t, bool mark) {
   if (!t.measured()) return "<td class=\"soft\">–</td>";
   return std::string("<td") + (mark ? " class=\"fast\"" : "") + " title=\"median " + three_digits(t.median) + " µs of " +
          std::to_string(t.batches) + " batches\">" + three_digits(t.lowest) + "</td>";
+}
+
+std::string breakable(const std::string& name) {
+  std::string s;
+  for (const char c : escape(name)) s += c == '_' ? std::string("_<wbr>") : std::string(1, c);
+  return s;
 }
 
 namespace {
@@ -45,39 +56,31 @@ using Cost = double (*)(const Cell&);  // [µs]; NaN: not measured
 
 double apply_cost(const Cell& c) { return c.time.apply.lowest; }
 double first_solve_cost(const Cell& c) {
-  return c.solve_status == "ok" ? c.time.update.lowest + c.time.solve.lowest : NAN;
+  return c.answered(&Phases::solve) ? c.time.update.lowest + c.time.solve.lowest : NAN;
 }
 
-/// The scene on which the slowest and the fastest operator are furthest apart. Times within 5 % count as equal; the
-/// operator that comes first in the table is named then.
-std::string largest_gap(const Results& r, Cost cost, const std::string& what) {
-  double best = 0;
-  std::string text;
+/// How much faster `op` is than explicit matrices (dense_cholesky), from the scene where it is least to the one where it is most.
+std::string against_dense(const Results& r, const std::string& op, Cost cost, const std::string& what) {
+  double least = INFINITY, most = 0;
+  const SceneResult *where_least = nullptr, *where_most = nullptr;
   for (const SceneResult& s : r.scenes) {
-    const Cell *slow = nullptr, *fast = nullptr;
-    for (const Cell& c : s.cells) {
-      const double t = cost(c);
-      if (std::isnan(t)) continue;
-      if (!slow || t > 1.05 * cost(*slow)) slow = &c;
-      if (!fast || t < 0.95 * cost(*fast)) fast = &c;
-    }
-    if (!slow || slow == fast) continue;
-    const double gap = cost(*slow) / cost(*fast);
-    if (gap <= best) continue;
-    best = gap;
-    text = fact(three_digits(gap) + "×", what + " on " + s.name + ": " + fast->op + " faster than " + slow->op);
+    const auto cell = [&](const std::string& name) { return std::find_if(s.cells.begin(), s.cells.end(), [&](const Cell& c) { return c.op == name; }); };
+    const auto dense = cell("dense_cholesky"), own = cell(op);
+    if (dense == s.cells.end() || own == s.cells.end()) continue;
+    const double ratio = cost(*dense) / cost(*own);
+    if (ratio < least) least = ratio, where_least = &s;
+    if (ratio > most) most = ratio, where_most = &s;
   }
-  return text;
-}
-
-/// A name that may be broken after its underscores.
-std::string breakable(const std::string& name) {
-  std::string s;
-  for (const char c : escape(name)) s += c == '_' ? std::string("_<wbr>") : std::string(1, c);
-  return s;
+  if (!where_least) return "";
+  return fact(three_digits(least) + "–" + three_digits(most) + "×", what + ": " + op + " over explicit matrices (dense_cholesky), from " + where_least->name + " to " + where_most->name);
 }
 
 using Column = Timing Phases::*;
+
+/// In the place of a time: the status of what ended without an answer.
+std::string no_answer(const Cell& c, Column phase) {
+  return "<td class=\"soft\" title=\"ended without an answer\">" + breakable(phase == &Phases::solve && !c.solved() ? c.solve_status : c.update_status) + "</td>";
+}
 
 std::string matrix(const Results& r, const std::string& caption, Column phase) {
   std::string s = "<div class=\"wide\"><table class=\"matrix\"><caption>" + caption + "</caption><thead><tr><th>scene</th>";
@@ -88,12 +91,32 @@ std::string matrix(const Results& r, const std::string& caption, Column phase) {
     double best = INFINITY;
     if (phase)
       for (const Cell& c : scene.cells)
-        if ((c.time.*phase).measured()) best = std::min(best, (c.time.*phase).lowest);
+        if ((c.time.*phase).measured() && c.answered(phase)) best = std::min(best, (c.time.*phase).lowest);
     for (const Cell& c : scene.cells)
-      s += phase ? time_cell(c.time.*phase, (c.time.*phase).lowest <= 1.05 * best) : verdict_cell(c);
+      s += !phase ? verdict_cell(c) : !c.answered(phase) ? no_answer(c, phase) : time_cell(c.time.*phase, (c.time.*phase).lowest <= 1.05 * best);
     s += "</tr>";
   }
   return s + "</tbody></table></div>";
+}
+
+/// What was not held, scene by scene, with the command that does it: for want of time, and what no law of size can judge.
+std::string left_out_list(const Results& r) {
+  std::string s;
+  for (const SceneResult& scene : r.scenes) {
+    std::string ops, blind;
+    int n = 0;
+    for (const Cell& c : scene.cells) {
+      if (c.left_out()) ops += " --op " + c.op, n += c.left_out();
+      if (c.checked() > 0 && !c.against_definition()) blind += (blind.empty() ? "" : ", ") + c.op;
+    }
+    const std::string name = "<b>" + escape(scene.name) + "</b>: ";
+    if (n > 0) s += "<li>" + name + std::to_string(n) + " laws left out: <code>delassus check " + escape(scene.name + ops) + "</code></li>";
+    if (!blind.empty())
+      s += "<li>" + name + "held by laws of identical bits alone, too large for the bounds of the others: " + escape(blind) +
+           "; <code>delassus accuracy " + escape(scene.name) + "</code> measures them against 113 bits</li>";
+  }
+  if (r.interrupted) s = "<li><b>interrupted</b>: what is missing was not measured</li>" + s;
+  return s.empty() ? "" : "<details class=\"small\" open><summary>What was not checked</summary><ul>" + s + "</ul></details>";
 }
 
 }  // namespace
@@ -107,16 +130,16 @@ std::string summary_section(const Results& r) {
   s += "<p class=\"soft small\">" + escape(r.machine.date + " · revision " + r.machine.revision + " · " +
        r.machine.processor + " · " + r.machine.compiler) + (r.quick ? " · <b>quick run</b>" : "") + "</p></header>";
   s += "<div class=\"facts\">";
-  const int unchecked = r.unchecked();
-  const std::string rest = unchecked == 0 ? "" : "; " + std::to_string(unchecked) + " of these pairs were not checked, for want of time: delassus check SCENE --op NAME does";
-  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : r.checked() == 0 ? "–" : unchecked ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
+  const int left = r.left_out();
+  const std::string rest = left == 0 ? "" : "; " + std::to_string(left) + " more were left out, listed below with the commands that check them";
+  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : r.checked() == 0 ? "–" : left || r.interrupted ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
             failed ? "of " + std::to_string(r.checked()) + " law checks failed"
                    : std::to_string(r.checked()) + " law checks: " + std::to_string(r.operators.size()) +
                          " operators on " + std::to_string(r.scenes.size()) + " scenes" + escape(rest));
   s += fact(ratio < 0 ? "–" : escape(ratio_text(ratio)), where);
-  s += largest_gap(r, apply_cost, "one application");
-  s += largest_gap(r, first_solve_cost, "new configuration and one solve");
-  s += "</div><nav><a href=\"#overview\">Overview</a> <a href=\"#accuracy\">Accuracy</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
+  s += against_dense(r, "aba_sweep", apply_cost, "time of one application");
+  s += against_dense(r, accuracy::default_rung, first_solve_cost, "time of a new configuration and one solve");
+  s += "</div>" + left_out_list(r) + "<nav><a href=\"#overview\">Overview</a> <a href=\"#accuracy\">Accuracy</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
        "<a href=\"#laws\">Laws</a> <a href=\"#operators\">Operators</a> <a href=\"#machine\">Reproduce</a></nav>";
   return s;
 }
@@ -124,7 +147,7 @@ std::string summary_section(const Results& r) {
 std::string overview_section(const Results& r) {
   return "<h2 id=\"overview\">Overview</h2><p>Times are the lowest of several batches in one run, in microseconds, one "
          "core; the median is in each number's tooltip and in <code>results.json</code>. <b>Bold</b>: fastest of its row, and what comes within 5 % of it. "
-         "<em>update</em>: the numbers of a configuration; <em>apply</em>, <em>solve</em>: one vector.</p><div class=\"grid\">" +
+         "<em>update</em>: the numbers of a configuration; <em>apply</em>, <em>solve</em>: one vector.</p><div class=\"tables\">" +
          matrix(r, "Laws: worst error ratio (holds below 30)", nullptr) + matrix(r, "update [µs]", &Phases::update) +
          matrix(r, "apply [µs]", &Phases::apply) + matrix(r, "solve [µs]", &Phases::solve) + "</div>";
 }
@@ -133,8 +156,8 @@ std::string page(const Results& r) {
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>delassus: report</title>"
          "<link rel=\"icon\" href=\"data:,\"><style>" + std::string(page_style()) + "</style></head>\n<body>\n" +
-         summary_section(r) + "\n<main>\n" + overview_section(r) + "\n" + accuracy_section(r) + "\n" + ladder_section(r) + "\n" + scenes_section(r) +
-         "\n" + laws_section(r) + "\n" + operators_section(r) + "\n" + machine_section(r) + "\n</main></body></html>\n";
+         summary_section(r) + "\n<main>\n" + (r.chosen ? scenes_section(r) + "\n" : "") + overview_section(r) + "\n" + accuracy_section(r) + "\n" +
+         ladder_section(r) + "\n" + (r.chosen ? "" : scenes_section(r) + "\n") + laws_section(r) + "\n" + operators_section(r) + "\n" + machine_section(r) + "\n</main></body></html>\n";
 }
 
 }  // namespace delassus::bench

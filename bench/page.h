@@ -26,6 +26,8 @@ namespace delassus::bench {
 
 /// `✓ 2.31` or `✗ 45.2`: the worst ratio of a cell as a table cell `<td>`.
 [[nodiscard]] std::string verdict_cell(const Cell& cell);
+/// A name that may be broken after its underscores.
+[[nodiscard]] std::string breakable(const std::string& name);
 /// Lowest time [µs] as a table cell `<td>`, the median in its title; `mark` for the fastest of a row.
 [[nodiscard]] std::string time_cell(const Timing& t, bool mark = false);
 

@@ -1,4 +1,6 @@
 // Sections of the page: cost against size, and the scenes one by one.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -54,12 +56,48 @@ std::string facts(const SceneResult& s) {
   return text;
 }
 
+/// From q to one answer, operator by operator: kinematics, update, solve, and what refinement and certificate add to it.
+std::string time_bars(const SceneResult& s) {
+  struct Bar {
+    std::string op;
+    std::array<double, 4> parts;
+    double total;
+  };
+  std::vector<Bar> bars;
+  for (const Cell& c : s.cells) {
+    if (c.solve_status.empty() || !c.answered(&Phases::solve)) continue;
+    const double solve = c.time.solve.lowest, plain = c.time.unrefined.measured() ? std::min(solve, c.time.unrefined.lowest) : solve;
+    Bar bar{c.op, {s.kinematics.lowest, c.time.update.lowest, plain, solve - plain}, 0};
+    for (const double part : bar.parts) bar.total += part;
+    bars.push_back(bar);
+  }
+  if (bars.empty()) return "";
+  std::stable_sort(bars.begin(), bars.end(), [](const Bar& x, const Bar& y) { return x.total < y.total; });
+  constexpr double most = 6;  // times the fastest: what takes longer is named only
+  std::string out, slower;
+  const double fastest = bars.front().total;
+  double longest = 0;
+  for (const Bar& b : bars)
+    if (b.total <= most * fastest) longest = std::max(longest, b.total);
+  for (const Bar& b : bars) {
+    if (b.total > most * fastest) {
+      slower += (slower.empty() ? "" : ", ") + escape(b.op) + " " + three_digits(b.total / fastest) + "×";
+      continue;
+    }
+    out += "<span>" + escape(b.op) + "</span><div>";
+    for (std::size_t k = 0; k < 4; ++k) out += "<i class=\"k" + std::to_string(k) + "\" style=\"width:" + format("%.1f", 78 * b.parts[k] / longest) + "%\"></i>";
+    out += three_digits(b.total) + " µs</div>";
+  }
+  return "<div class=\"bars-key\">from q to one answer:<i class=\"k0\"></i>kinematics and rows<i class=\"k1\"></i>update<i class=\"k2\"></i>solve<i class=\"k3\"></i>"
+         "refine and certify</div><div class=\"bars\">" + out + "</div>" + (slower.empty() ? "" : "<p class=\"small soft\">slower than " + format("%g", most) + "× the fastest: " + slower + "</p>");
+}
+
 std::string scene_article(const SceneResult& s) {
   std::string out = "<article class=\"scene\" id=\"" + escape(s.name) + "\"><figure>" + s.picture + "</figure><div><h3>" +
                     escape(s.name) + "</h3><p class=\"small\">" + facts(s) + "</p><div class=\"wide\"><table>" + cell_head +
                     "<tbody>";
   for (const Cell& c : s.cells) out += cell_row(c);
-  out += "</tbody></table></div>";
+  out += "</tbody></table></div>" + time_bars(s);
   if (!s.notes.empty()) {
     out += "<details class=\"small\"><summary>notes of the loader</summary><ul>";
     for (const std::string& note : s.notes) out += "<li>" + escape(note) + "</li>";
@@ -88,13 +126,14 @@ std::string figure(const std::string& svg, const std::string& caption) {
 
 std::string plots(const Results& r) {
   const auto time = [&](const char* id, Timing Phases::*phase, const char* caption) {
-    const auto value = [&](const Cell& c) { return (c.time.*phase).lowest; };
+    const auto value = [&](const Cell& c) { return c.answered(phase) ? (c.time.*phase).lowest : NAN; };
     return figure(plot(id, std::string(caption) + ": time against links", "links", "time [µs]", series(r, value)), caption);
   };
   std::string s = time("p-update", &Phases::update, "update: the numbers of a new configuration") +
                   time("p-damping", &Phases::new_damping, "new damping: the numbers of a new R⁻¹") +
                   time("p-apply", &Phases::apply, "apply: a = A f") + time("p-solve", &Phases::solve, "solve: f = A⁻¹ a");
   const auto operations = [](const Cell& c) {
+    if (!c.answered(&Phases::solve)) return static_cast<double>(NAN);
     return static_cast<double>(std::max<std::int64_t>(0, c.operations.update) + std::max<std::int64_t>(0, c.operations.apply) +
                                std::max<std::int64_t>(0, c.operations.solve));
   };

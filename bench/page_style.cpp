@@ -4,9 +4,9 @@ namespace delassus::bench {
 
 const char* page_style() {
   return R"css(
-:root{color-scheme:light dark;--ink:#1b1f24;--soft:#57606a;--line:#d0d7de;--paper:#fff;--card:#f6f8fa;--good:#1a7f37;--bad:#c11528;--mark:#0b62b8;
+:root{color-scheme:light dark;--ink:#1b1f24;--soft:#57606a;--line:#d0d7de;--paper:#fff;--card:#f6f8fa;--good:#1a7f37;--bad:#c11528;--mark:#0b62b8;--shade:#0003;
 --t0:#f3f6f9;--t1:#dde5ec;--t2:#c9d4de;--edge:#4a5868;--contact:#c2410c;--loop:#7c3aed}
-@media (prefers-color-scheme:dark){:root{--ink:#e6e9ec;--soft:#9aa4ae;--line:#3a424b;--paper:#14181c;--card:#1c2127;--good:#4cc26a;--bad:#ff7b72;--mark:#6cb2ff;
+@media (prefers-color-scheme:dark){:root{--ink:#e6e9ec;--soft:#9aa4ae;--line:#3a424b;--paper:#14181c;--card:#1c2127;--good:#4cc26a;--bad:#ff7b72;--mark:#6cb2ff;--shade:#fff3;
 --t0:#55616d;--t1:#404a54;--t2:#333c45;--edge:#9fb0c0;--contact:#ff9a5c;--loop:#b794ff}}
 *{box-sizing:border-box}
 html{-webkit-text-size-adjust:100%}
@@ -26,7 +26,7 @@ nav a{margin-right:1rem;white-space:nowrap}
 .facts div{background:var(--card);border:1px solid var(--line);border-radius:6px;padding:.5rem .7rem}
 .facts b{display:block;font-size:1.35rem;line-height:1.25;font-weight:650}
 .facts div>span{color:var(--soft);font-size:.84rem}
-.wide{overflow-x:auto;margin:.5rem 0 1rem;max-width:100%}
+.wide{overflow-x:auto;margin:.5rem 0 1rem;max-width:100%;background:linear-gradient(90deg,var(--paper) 40%,transparent),linear-gradient(270deg,var(--paper) 40%,transparent) 100% 0,linear-gradient(90deg,var(--shade),transparent),linear-gradient(270deg,var(--shade),transparent) 100% 0;background-repeat:no-repeat;background-size:44px 100%,44px 100%,16px 100%,16px 100%;background-attachment:local,local,scroll,scroll}
 table{border-collapse:collapse;font-size:.84rem;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .42rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
 th{font-weight:600;vertical-align:bottom}
@@ -35,6 +35,12 @@ thead th{border-bottom:2px solid var(--line)}
 th:first-child,td:first-child{text-align:left}
 td.text,th.text{text-align:left;white-space:normal;min-width:13rem;vertical-align:top}
 th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}
+.tables table{font-size:.8rem}.tables th,.tables td{padding:.18rem .34rem}
+.bars{display:grid;grid-template-columns:max-content minmax(0,1fr);gap:.1rem .6rem;font-size:.8rem;align-items:center;margin:.3rem 0;max-width:640px}
+.bars>div{display:flex;align-items:center;gap:.4rem;white-space:nowrap}
+.bars i{display:block;height:.7rem;flex:none}
+.k0{background:#8c959f}.k1{background:#0072b2}.k2{background:#e69f00}.k3{background:#cc79a7}
+.bars-key{font-size:.8rem;color:var(--soft)}.bars-key i{display:inline-block;width:.8rem;height:.7rem;margin:0 .25rem 0 .7rem}
 .matrix th{white-space:normal}
 .matrix th:first-child{white-space:nowrap}
 caption{text-align:left;font-weight:600;padding:.2rem .55rem .3rem 0;font-size:.92rem}
@@ -46,8 +52,8 @@ figure{margin:0;min-width:0}
 figcaption{font-size:.86rem;color:var(--soft)}
 svg{display:block;width:100%;height:auto}
 svg.plot text,svg.plot tspan{font-family:inherit}
-.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,270px) minmax(0,1fr);gap:.4rem 1.2rem;align-items:start}
-.scene .wide{margin-bottom:.2rem}
+.scene{border-top:1px solid var(--line);padding:1rem 0 .4rem;display:grid;grid-template-columns:minmax(0,230px) minmax(0,1fr);gap:.4rem 1.2rem;align-items:start}
+.scene .wide{margin-bottom:.2rem}.scene table{font-size:.8rem}.scene th,.scene td{padding:.18rem .36rem}
 @media (max-width:1160px){.scene figure{max-width:420px}.scene{grid-template-columns:minmax(0,1fr)}}
 .picture path{fill:none;stroke:var(--edge);stroke-width:.8;stroke-linejoin:round;vector-effect:non-scaling-stroke}
 .picture .t0{fill:var(--t0)}.picture .t1{fill:var(--t1)}.picture .t2{fill:var(--t2)}

@@ -70,15 +70,20 @@ std::string laws_section(const Results& r) {
   std::string s = "<h2 id=\"laws\">Laws</h2><p>A law is an identity between two routes. Its error is divided by the unit "
     "roundoff of the arithmetic and by a named bound; the ratio must stay below 30, the only tolerance there is. The table "
     "shows the worst ratio over all scenes; 0 is exact agreement.</p>" + failures(r);
-  s += "<div class=\"wide\"><table><thead><tr><th>law</th>";
-  for (const OperatorInfo& o : r.operators) s += "<th>" + escape(o.name) + "</th>";
-  s += "<th class=\"text\">identity</th><th class=\"text\">measured against</th></tr></thead><tbody>";
+  s += "<details><summary>" + std::to_string(r.laws.size()) + " laws and the worst ratio of each operator</summary><div class=\"wide tables\"><table class=\"matrix\"><thead><tr><th>law</th>";
+  for (const OperatorInfo& o : r.operators) s += "<th>" + breakable(o.name) + "</th>";
+  s += "</tr></thead><tbody>";
   for (const RowInfo& law : r.laws) {
     s += "<tr><td>" + escape(law.name) + "</td>";
     for (std::size_t i = 0; i < r.operators.size(); ++i) s += law_cell(worst_of(r, i, law.name));
-    s += "<td class=\"text\">" + escape(law.text) + "</td><td class=\"text\">" + escape(law.detail) + "</td></tr>";
+    s += "</tr>";
   }
-  s += "</tbody></table></div>" + not_checked(r);
+  s += "</tbody></table></div></details>" + not_checked(r) +
+       "<details><summary>What each law says</summary><div class=\"wide\"><table><thead><tr><th>law</th><th class=\"text\">identity</th>"
+       "<th class=\"text\">measured against</th></tr></thead><tbody>";
+  for (const RowInfo& law : r.laws)
+    s += "<tr><td>" + escape(law.name) + "</td><td class=\"text\">" + escape(law.text) + "</td><td class=\"text\">" + escape(law.detail) + "</td></tr>";
+  s += "</tbody></table></div></details>";
   s += "<div class=\"wide\"><table><caption>References</caption><thead><tr><th>name</th><th class=\"text\">what it is</th>"
        "<th class=\"text\">where it can be trusted</th></tr></thead><tbody>";
   for (const RowInfo& ref : r.references)

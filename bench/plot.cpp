@@ -38,12 +38,11 @@ std::string points(const Series& one, std::size_t most) {
 std::string script(const std::string& x_axis, const std::string& y_axis, const std::vector<Series>& series,
                    Axes axes) {
   std::ostringstream s;
-  s << "set terminal svg size 520,340 dynamic font 'sans-serif,13'\n"
+  s << "set terminal svg size 640,340 dynamic font 'sans-serif,13'\n"
        "set encoding utf8\n"
     << (axes == Axes::logarithmic ? "set logscale xy\nset format '10^{%T}'\n" : "set yrange [0:*]\n")
     << "set grid lw 0.6\nset border 3\nset tics nomirror\n"
-       "set key at graph 0.02, graph 0.98 left top reverse Left samplen 3 spacing 1.2\n"
-       "set offsets graph 0, graph 0, graph 0.05, graph 0\n"
+       "set key outside right top reverse Left samplen 2.5 spacing 1.15\n"
     << "set xlabel '" << x_axis << "'\nset ylabel '" << y_axis << "'\nplot ";
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Style& style = style_of(series[i]);

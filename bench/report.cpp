@@ -1,6 +1,7 @@
 #include "bench/report.h"
 
 #include <fstream>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -19,8 +20,7 @@ namespace delassus::bench {
 
 namespace {
 
-constexpr double check_limit = 60;         // seconds per scene for all laws
-constexpr std::int64_t quick_rows = 120;   // scenes above are not checked in a quick run
+constexpr double check_limit = 60, quick_limit = 5;   // seconds per scene for what does not come first (verify.h)
 
 using Ops = std::vector<const OperatorRow*>;
 
@@ -56,34 +56,26 @@ std::string verdict_line(const SceneResult& s) {
     failed += c.failed();
     if (const LawResult* w = c.worst(); w && !(w->ratio <= worst)) worst = w->ratio;
   }
+  const int left = std::accumulate(s.cells.begin(), s.cells.end(), 0, [](int n, const Cell& c) { return n + c.left_out(); });
   if (checked == 0) return "no law could be checked";
   return format("%d checks, worst ratio ", checked) + ratio_text(worst) +
-         (failed ? format(", %d FAILED", failed) : std::string(", all hold"));
+         (failed ? format(", %d FAILED", failed) : std::string(left ? ", hold" : ", all hold")) + (left ? format(", %d left out", left) : std::string());
 }
 
-void check_scenes(const std::vector<Scene>& scenes, const Ops& ops, bool quick, Results& r, const Progress& progress) {
-  std::vector<Scene> chosen;
-  std::vector<SceneResult> results;
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    if (quick && r.scenes[i].rows > quick_rows) continue;
-    chosen.push_back(scenes[i]);
-    results.push_back(std::move(r.scenes[i]));
-    index.push_back(i);
-  }
+void check_scenes(const std::vector<Scene>& scenes, const Ops& ops, const ReportOptions& options, Results& r, const Progress& progress) {
   int n = 0;
-  verify(chosen, ops, check_limit, results, [&](const SceneResult& s) {
-    progress(format("check %2d/%zu  %s  ", ++n, chosen.size(), pad_right(s.name, 26).c_str()) + verdict_line(s));
+  const double seconds = options.quick ? quick_limit : check_limit;
+  verify(scenes, ops, {seconds, options.stop}, r.scenes, [&](const SceneResult& s) {
+    progress(format("check %2d/%zu  %s  ", ++n, scenes.size(), pad_right(s.name, 26).c_str()) + verdict_line(s));
   });
-  for (std::size_t k = 0; k < index.size(); ++k) r.scenes[index[k]] = std::move(results[k]);
 }
 
 constexpr double accuracy_time = 10;  // seconds; what has not begun by then is left out
 
 AccuracyResult accuracy_of(const ReportOptions& options, const Progress& progress) {
-  accuracy::Options timed{.dampings = accuracy::dampings_up_to(1e-2), .budget = 0.001, .longest = 0.02};
+  accuracy::Options timed{.dampings = accuracy::dampings_up_to(1e-2), .budget = 0.001, .stop = options.stop, .longest = 0.02};
   const accuracy::Campaign c =
-      accuracy::run_campaign({options.scenes, accuracy::rungs(), timed, false, options.quick ? accuracy_time / 2 : accuracy_time}, progress);
+      accuracy::run_campaign({options.scenes, accuracy::rungs(), timed, false, options.quick ? accuracy_time / 2 : accuracy_time, options.scenes.empty()}, progress);
   return {accuracy::overview(c.here, accuracy::Price::time), accuracy::digits_grid(c.families), c.left_out};
 }
 
@@ -101,12 +93,15 @@ Results run_report(const ReportOptions& options, const Progress& progress) {
   Results r;
   r.machine = this_machine();
   r.quick = options.quick;
+  r.chosen = !options.scenes.empty();
+  const auto stopped = [&] { return options.stop && options.stop(); };
   const Ops ops = chosen(options);
   copy_tables(ops, r);
   std::vector<Scene> scenes;
   for (const std::string& name : options.scenes.empty() ? scene_names() : options.scenes) scenes.push_back(open_scene(name, options.opening));
   int n = 0;
   for (const Scene& scene : scenes) {
+    if (stopped()) break;
     r.scenes.push_back(facts_of(scene));
     SceneResult& s = r.scenes.back();
     for (const Warning& w : scene.warnings) s.notes.push_back("warning: " + w.text);
@@ -115,18 +110,29 @@ Results run_report(const ReportOptions& options, const Progress& progress) {
                     static_cast<long long>(s.dofs), static_cast<long long>(s.rows)));
   }
   r.accuracy = accuracy_of(options, progress);
-  if (options.ladder && options.ops.empty())
+  if (options.ladder && options.ops.empty() && !r.chosen)
     r.ladder = climb(ladder_sizes(options.quick ? 1000 : 10000), limits, options.quick ? 0.2 : 1.0, 5e8,
-                     [&](const std::string& line) { progress("size  " + line); });
-  if (options.check) check_scenes(scenes, ops, options.quick, r, progress);
+                     [&](const std::string& line) { progress("size  " + line); }, options.stop);
+  scenes.resize(r.scenes.size());
+  if (options.check) check_scenes(scenes, ops, options, r, progress);
+  r.interrupted = stopped();
   r.seconds = seconds_since(start);
   return r;
 }
 
-void write_report(const Results& results, const std::filesystem::path& directory) {
+void check_writable(const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
+  if (!error) {
+    const std::filesystem::path probe = directory / ".delassus-can-write";
+    write_file(probe, "");
+    std::filesystem::remove(probe, error);
+  }
   if (error) throw ModelError(directory.string(), "directory", error.message(), "a directory that can be made and written; choose another --out");
+}
+
+void write_report(const Results& results, const std::filesystem::path& directory) {
+  check_writable(directory);
   write_file(directory / "index.html", page(results));
   write_file(directory / "results.json", nlohmann::json(results).dump(1) + "\n");
 }
@@ -144,6 +150,7 @@ std::string text_table(const Results& r) {
            pad_left(three_digits(c.time.update.lowest), 12) + pad_left(three_digits(c.time.apply.lowest), 11) +
            pad_left(solved ? three_digits(c.time.solve.lowest) : c.solve_status, 15) + "  " +
            (!w ? "not checked" : (c.failed() ? format("%d FAILED, ", c.failed()) : std::string("hold, ")) + "worst " + ratio_text(w->ratio)) +
+           (c.left_out() ? format(", %d left out", c.left_out()) : std::string()) +
            "\n";
     }
   for (const SceneResult& scene : r.scenes)

@@ -18,6 +18,7 @@ struct ReportOptions {
   bool check = true;                 ///< hold the laws
   bool ladder = true;                ///< climb the swimmers; with `ops` never
   std::vector<const OperatorRow*> ops;  ///< these operators; empty: all
+  std::function<bool()> stop;        ///< looked at before every scene, size and law; what follows is left out, and said
   SceneOptions opening;              ///< how `scenes` are opened; their warnings become notes of the page
 };
 
@@ -25,6 +26,9 @@ using Progress = std::function<void(const std::string&)>;
 
 /// Runs everything. Checks run on all cores, one scene each; timings run alone. @throws ModelError for an unknown scene.
 [[nodiscard]] Results run_report(const ReportOptions& options, const Progress& progress);
+
+/// Makes DIR and a file in it, so that a wrong one is refused before anything is measured. @throws ModelError when it cannot.
+void check_writable(const std::filesystem::path& directory);
 
 /// Writes DIR/index.html and DIR/results.json. @throws ModelError when DIR cannot be written.
 void write_report(const Results& results, const std::filesystem::path& directory);

@@ -1,5 +1,6 @@
 #include "bench/results.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace delassus::bench {
@@ -18,6 +19,16 @@ int Cell::failed() const {
   return n;
 }
 
+int Cell::left_out() const {
+  int n = 0;
+  for (const LawResult& l : laws) n += l.left_out;
+  return n;
+}
+
+bool Cell::against_definition() const {
+  return std::any_of(laws.begin(), laws.end(), [](const LawResult& l) { return l.skipped.empty() && l.law.find("= definition") != std::string::npos; });
+}
+
 const LawResult* Cell::worst() const {
   const LawResult* w = nullptr;
   for (const LawResult& l : laws)
@@ -32,10 +43,10 @@ int Results::checked() const {
   return n;
 }
 
-int Results::unchecked() const {
+int Results::left_out() const {
   int n = 0;
   for (const SceneResult& s : scenes)
-    for (const Cell& c : s.cells) n += c.checked() == 0;
+    for (const Cell& c : s.cells) n += c.left_out();
   return n;
 }
 
@@ -56,7 +67,7 @@ json to_json(const Timing& t) {
 json count(std::int64_t n) { return n < 0 ? json(nullptr) : json(n); }
 
 json to_json(const LawResult& l) {
-  if (!l.skipped.empty()) return {{"law", l.law}, {"skipped", l.skipped}};
+  if (!l.skipped.empty()) return {{"law", l.law}, {"skipped", l.skipped}, {"left_out", l.left_out}};
   json j = {{"law", l.law}, {"ratio", std::isfinite(l.ratio) ? json(l.ratio) : json("infinity")}, {"passed", l.passed}};
   if (!l.note.empty()) j["note"] = l.note;
   return j;
@@ -79,6 +90,7 @@ void to_json(json& j, const Cell& c) {
   j["microseconds"] = {{"analyze", to_json(c.time.analyze)}, {"update", to_json(c.time.update)},
                        {"new_damping", to_json(c.time.new_damping)}, {"apply", to_json(c.time.apply)},
                        {"solve", to_json(c.time.solve)}};
+  if (c.time.unrefined.measured()) j["microseconds"]["unrefined_solve"] = to_json(c.time.unrefined);
   j["operations"] = {{"update", count(c.operations.update)}, {"new_damping", count(c.operations.new_damping)},
                      {"apply", count(c.operations.apply)}, {"solve", count(c.operations.solve)}};
   j["bytes"] = count(c.bytes);
@@ -109,7 +121,7 @@ void to_json(json& j, const Results& r) {
                     {"flags", m.flags}, {"revision", m.revision}, {"date", m.date}}},
        {"quick", r.quick}, {"seconds", r.seconds},
        {"units", {{"time", "µs per call"}, {"memory", "bytes"}, {"damping", "1/kg"}, {"ratio", "error/(eps*bound), holds below 30"}}},
-       {"checked", r.checked()}, {"failed", r.failed()}, {"scenes", r.scenes}, {"swimmers", r.ladder}};
+       {"checked", r.checked()}, {"failed", r.failed()}, {"left_out", r.left_out()}, {"interrupted", r.interrupted}, {"scenes", r.scenes}, {"swimmers", r.ladder}};
   j["digits_kept"] = r.accuracy.digits;
   j["operators"] = json::array();
   for (const OperatorInfo& o : r.operators) j["operators"].push_back(to_json(o));

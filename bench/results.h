@@ -17,6 +17,7 @@ namespace delassus::bench {
 /// The phases of an operator that are timed and counted; `analyze` is timed only.
 struct Phases {
   Timing analyze, update, new_damping, apply, solve;
+  Timing unrefined;   ///< of a solve without refinement and certificate, by operators that have them
 };
 struct Operations {
   std::int64_t update = -1, new_damping = -1, apply = -1, solve = -1;
@@ -29,6 +30,7 @@ struct LawResult {
   bool passed = true;
   std::string skipped;     ///< why the law does not apply here; empty: it was checked
   std::string note;        ///< what went wrong when it is not a matter of size
+  bool left_out = false;   ///< skipped although it applies: for want of time, or interrupted
 };
 
 /// One operator on one problem.
@@ -43,6 +45,15 @@ struct Cell {
 
   [[nodiscard]] int checked() const;
   [[nodiscard]] int failed() const;
+  [[nodiscard]] int left_out() const;
+  /// Whether a law against an independent definition was checked.
+  [[nodiscard]] bool against_definition() const;
+  /// Whether a phase ended with an answer: a time without one is none.
+  [[nodiscard]] bool answered(Timing Phases::*phase) const {
+    const bool updated = update_status.empty() || update_status == "ok";
+    return phase == &Phases::analyze || (updated && (phase != &Phases::solve || solved()));
+  }
+  [[nodiscard]] bool solved() const { return solve_status.empty() || solve_status == "ok"; }
   /// The checked law with the largest ratio; nullptr when none was checked.
   [[nodiscard]] const LawResult* worst() const;
 };
@@ -93,6 +104,8 @@ struct Machine {
 struct Results {
   Machine machine;
   bool quick = false;
+  bool chosen = false;         ///< scenes were asked for by name: the page is about them first
+  bool interrupted = false;    ///< ended before its time
   double seconds = 0;          ///< duration of the run
   std::vector<OperatorInfo> operators;
   std::vector<RowInfo> laws, references;
@@ -102,7 +115,7 @@ struct Results {
 
   [[nodiscard]] int checked() const;
   [[nodiscard]] int failed() const;
-  [[nodiscard]] int unchecked() const;  ///< pairs of operator and scene on which no law was checked
+  [[nodiscard]] int left_out() const;   ///< laws that apply and were not checked
 };
 
 void to_json(nlohmann::json& j, const Results& r);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <thread>
 
+#include "bench/accuracy.h"
 #include "bench/text.h"
 #include "property_tests/laws.h"
 
@@ -13,28 +14,59 @@ namespace delassus::bench {
 
 namespace {
 
+struct Pair {
+  std::size_t op, law;
+};
+
 LawResult outcome(const laws::LawRow& law, const OperatorRow& op, const laws::Case& c) {
   const laws::Outcome o = laws::check(law, op, c);
-  LawResult r{std::string(law.name), o.verdict.ratio, !o.failed(), o.skipped ? o.skipped : "", o.verdict.note};
+  LawResult r{std::string(law.name), o.verdict.ratio, !o.failed(), o.skipped ? o.skipped : "", o.verdict.note, false};
   return r;
 }
 
-void verify_one(const Scene& scene, const std::vector<const OperatorRow*>& ops, double time_limit, SceneResult& result) {
+/// Laws against a definition, and every law of the default.
+bool comes_first(const laws::LawRow& law, const OperatorRow& op) {
+  return op.name == accuracy::default_rung || (law.name.find("= definition") != std::string_view::npos && law.name.rfind("exact", 0) != 0);
+}
+
+/// Pairs of operator and law by what matters first: every operator against the definitions, the default against all laws, then law
+/// by law, so that time runs out on every operator alike.
+std::vector<Pair> by_importance(const std::vector<const OperatorRow*>& ops) {
+  std::vector<Pair> pairs;
+  for (std::size_t l = 0; l < laws::laws().size(); ++l)
+    for (std::size_t i = 0; i < ops.size(); ++i) pairs.push_back({i, l});
+  const auto rank = [&](const Pair& p) {
+    const laws::LawRow& law = laws::laws()[p.law];
+    return !comes_first(law, *ops[p.op]) ? 2 : law.name.find("= definition") == std::string_view::npos ? 1 : 0;
+  };
+  std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& x, const Pair& y) { return rank(x) < rank(y); });
+  return pairs;
+}
+
+void verify_one(const Scene& scene, const std::vector<const OperatorRow*>& ops, const Deadline& deadline, SceneResult& result) {
   const auto start = std::chrono::steady_clock::now();
+  if (deadline.stop && deadline.stop()) return;
   const laws::Case c = laws::make_case(problem_of(scene), scene.damping, scene.name, 1);
-  for (std::size_t i = 0; i < ops.size(); ++i)
-    for (const laws::LawRow& law : laws::laws()) {
-      if (seconds_since(start) < time_limit)
-        result.cells[i].laws.push_back(outcome(law, *ops[i], c));
-      else
-        result.cells[i].laws.push_back({std::string(law.name), 0, true,
-                                        format("time limit of %.0f s per scene reached", time_limit), ""});
+  for (std::size_t i = 0; i < ops.size(); ++i) result.cells[i].laws.resize(laws::laws().size());
+  for (const Pair& p : by_importance(ops)) {
+    const laws::LawRow& law = laws::laws()[p.law];
+    LawResult& r = result.cells[p.op].laws[p.law];
+    const bool stopped = deadline.stop && deadline.stop();
+    const bool due = deadline.seconds > 0 ? seconds_since(start) < deadline.seconds : false;
+    if (!stopped && (due || comes_first(law, *ops[p.op]))) {
+      r = outcome(law, *ops[p.op], c);
+      continue;
     }
+    r.law = std::string(law.name);
+    const char* const why_not = law.why_not(*ops[p.op], c);
+    r.left_out = why_not == nullptr;
+    r.skipped = why_not ? why_not : stopped ? "interrupted" : "no time left";
+  }
 }
 
 }  // namespace
 
-void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, double time_limit,
+void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, const Deadline& deadline,
             std::vector<SceneResult>& results, const std::function<void(const SceneResult&)>& done) {
   std::vector<std::size_t> order(scenes.size());
   std::iota(order.begin(), order.end(), 0);
@@ -45,7 +77,7 @@ void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRo
   const auto work = [&] {
     for (std::size_t k; (k = next++) < order.size();) {
       const std::size_t i = order[k];
-      verify_one(scenes[i], ops, time_limit, results[i]);
+      verify_one(scenes[i], ops, deadline, results[i]);
       const std::lock_guard lock(speaking);
       done(results[i]);
     }

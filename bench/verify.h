@@ -11,11 +11,17 @@
 
 namespace delassus::bench {
 
+/// When laws are left out: after so many seconds per scene, except those that come first; all of them once `stop` says so, scenes not begun without a word.
+struct Deadline {
+  double seconds = 60;
+  std::function<bool()> stop = {};
+};
+
 /// Holds every law for each of the operators on each scene and stores the outcomes in the cells of `results` (same order as
-/// `scenes`, one cell per operator). Scenes run side by side on all cores, those with most rows first. From
-/// `time_limit` seconds on, the laws left of a scene are skipped and say so. `done` is called once per scene, one call
-/// at a time.
-void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, double time_limit, std::vector<SceneResult>& results,
+/// `scenes`, one cell per operator). First, and whatever it takes: every operator against the definitions, and the default against
+/// every law; then law by law. What the deadline leaves out says so. Scenes run side by side on all cores, those with most
+/// rows first. `done` is called once per scene, one call at a time.
+void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, const Deadline& deadline, std::vector<SceneResult>& results,
             const std::function<void(const SceneResult&)>& done);
 
 }  // namespace delassus::bench

@@ -13,6 +13,7 @@
 #include "cli/accuracy_steps.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/interrupt.h"
 #include "generators/families.h"
 #include "property_tests/options.h"
 
@@ -133,6 +134,7 @@ accuracy::Options settings(const Options& o) {
   s.random_right_side = o.rhs == "random";
   s.seed = o.seed;
   if (o.no_time) s.budget = 0;
+  s.stop = interrupted;
   return s;
 }
 
@@ -141,6 +143,7 @@ int some(const Options& o) {
   json out = json::array();
   for (const std::string& name : o.subjects)
     for (const double away : o.away) {
+      if (interrupted()) break;
       json warnings;
       tables.push_back(measure(open_subject(name, o, away, warnings), rungs(o.ops), settings(o)));
       out.push_back(to_json(tables.back()));
@@ -161,6 +164,7 @@ int steps(const Options& o) {
   for (const std::string& name : o.subjects)
     for (const double away : o.away)
       for (const double damping : o.dampings.empty() ? std::vector<double>{own_damping} : o.dampings) {
+        if (interrupted()) break;
         json warnings;
         const Convergence c = converge(open_subject(name, o, away, warnings), rungs(o.ops), damping, settings(o));
         if (o.as_json) {
@@ -210,7 +214,8 @@ int run_accuracy(const Options& o) {
       throw ModelError("", "--damping", number_text(d) + " 1/kg", "a finite number above 0 [1/kg]; with --steps also 0");
   if (o.all && o.steps) throw ModelError("", "accuracy", "--all and --steps are given", "--steps with subjects; leave one of the two away");
   static_cast<void>(rungs({o.claim}));  // throws, listing the names
-  return o.all ? all(o) : o.steps ? steps(o) : some(o);
+  keep_on_interrupt();
+  return end_of_run(o.all ? all(o) : o.steps ? steps(o) : some(o), "what follows was not measured");
 }
 
 }  // namespace
@@ -235,7 +240,7 @@ void add_accuracy(options::Command& app, Run& run) {
   add_scene_options(*c, o->opening);
   c->footer("Errors are against an answer in Quad: max|δλ|/max|λ|, ‖δν‖/‖ν‖ in the norm of M, backward. The motion of lcaba_refined "
             "is its own ν, that of others M⁻¹Jᵀλ. The claim: on scenes, from 1e-14 to 1e-2, a rung's motion error is "
-            "below 1e-10, its λ error below 30 roundings and its certificate true. Exit code 1 when it is false.");
+            "below 1e-10, its λ error below 30 roundings and its certificate true. Ctrl-C keeps what was measured. Exit code 1 when it is false.");
   c->callback([=, &run] { run = [=] { return run_accuracy(*o); }; });
 }
 

@@ -6,6 +6,7 @@
 #include "cli/check_digits.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/interrupt.h"
 #include "property_tests/defects.h"
 #include "property_tests/options.h"
 
@@ -19,7 +20,7 @@ struct Options {
   std::string defect;
   Index n = 0;
   std::uint64_t seed = 1;
-  bool as_json = false, digits = false;
+  bool as_json = false, digits = false, all = false;
   std::optional<double> damping;
   std::string picture;
   SceneOptions opening;
@@ -81,6 +82,23 @@ void print_line(std::string_view law, const Line& l) {
   std::printf("  %s %s %8s  %3d checked%s  %s%s%s\n", l.failed ? "✗" : "✓", name.c_str(), bench::three_digits(l.ratio).c_str(),
               l.checked, l.skipped ? bench::format(", %d skipped", l.skipped).c_str() : "", l.label.c_str(),
               l.note.empty() ? "" : ": ", l.note.c_str());
+}
+
+/// One line per operator: laws held, broken, not applicable, the worst ratio and where; what is broken follows.
+void print_summary(std::string_view op, const std::vector<std::pair<std::string_view, Line>>& laws) {
+  int checked = 0, failed = 0, rest = 0;
+  const std::pair<std::string_view, Line>* worst = nullptr;
+  for (const auto& law : laws) {
+    checked += law.second.checked > 0;
+    failed += law.second.failed > 0;
+    rest += law.second.checked == 0;
+    if (law.second.checked && (!worst || !(law.second.ratio <= worst->second.ratio))) worst = &law;
+  }
+  std::printf("%s %5d %7d %12d", bench::pad_right(std::string(op), 24).c_str(), checked, failed, rest);
+  if (worst) std::printf("  %8s  %s (%s)", bench::three_digits(worst->second.ratio).c_str(), std::string(worst->first).c_str(), worst->second.label.c_str());
+  std::printf("\n");
+  for (const auto& [law, line] : laws)
+    if (line.failed) print_line(law, line);
   std::fflush(stdout);
 }
 
@@ -103,27 +121,37 @@ int check(const Options& o) {
   const std::string_view left_out = o.defect.empty() ? "" : laws::left_out(laws::find_defect(o.defect));
   json warnings;
   const std::vector<laws::Case> all = cases(o, warnings);
-  int failed = 0;
+  int failed = 0, checked = 0;
   json out = json::array();
   if (!o.as_json) print_cases(all);
+  if (!o.as_json && !o.all) std::printf("%s  laws  failed  not checked     worst  where (--all: every law)\n", bench::pad_right("operator", 23).c_str());
+  keep_on_interrupt();
   for (const OperatorRow* op : ops) {
     json rows = json::array();
-    if (!o.as_json) std::printf("%s\n", std::string(op->name).c_str());
+    std::vector<std::pair<std::string_view, Line>> lines;
+    if (!o.as_json && o.all) std::printf("%s\n", std::string(op->name).c_str());
     for (const laws::LawRow& law : laws::laws()) {
+      if (interrupted()) break;
       Line line;
       if (law.name == left_out) line.why_skipped = "its right operator breaks it too";
       else
-        for (const laws::Case& c : all) line.add(laws::check(law, *op, c));
+        for (const laws::Case& c : all)
+          if (!interrupted()) line.add(laws::check(law, *op, c));
+      if (line.checked + line.skipped == 0 && line.why_skipped.empty()) break;  // Ctrl-C before the first case
       failed += line.failed;
+      checked += line.checked;
       if (o.as_json) rows.push_back(line_json(law.name, line));
-      else print_line(law.name, line);
+      else if (o.all) print_line(law.name, line), std::fflush(stdout);
+      lines.emplace_back(law.name, std::move(line));
     }
+    if (lines.empty()) break;
+    if (!o.as_json && !o.all) print_summary(op->name, lines);
     out.push_back({{"name", op->name}, {"laws", rows}});
     if (!warnings.is_null()) out.back()["warnings"] = warnings;
   }
   if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
-  else std::printf("%zu cases, %d failed; a law holds below ratio %g\n", all.size(), failed, laws::pass_below);
-  return failed ? law_broken : good;
+  else std::printf("%zu cases, %d failed of %d checks; a law holds below ratio %g\n", all.size(), failed, checked, laws::pass_below);
+  return end_of_run(failed ? law_broken : good, "the operators and laws that follow were not checked");
 }
 
 int digits_of(const Options& o) {
@@ -142,12 +170,13 @@ void add_check(options::Command& app, Run& run) {
   c->add_option("scene,--scene", o->scene, "a scene instead of families");
   c->add_option("--n", o->n, "size, about the number of bodies; when left out, the middle size of the family")->check(options::whole(1));
   c->add_option("--seed", o->seed, "of the problem and its vectors")->check(options::whole(0))->capture_default_str();
+  c->add_flag("--all", o->all, "a line for every law, also of those that were not checked and why, instead of one per operator");
   c->add_flag("--json", o->as_json, "an array of {name, laws, of scenes also warnings}; with --digits an object");
   auto* digits = c->add_flag("--digits", o->digits, "instead: digits lost by every link, by random rounding (docs/digits.md); --op lcaba or aba_sweep");
   c->add_option("--damping", o->damping, "with --digits: R⁻¹ of every row [1/kg]")->check(options::at_least(0, "1/kg"))->needs(digits);
   c->add_option("--picture", o->picture, "with --digits: SVG of the scene, or of digits against link for a family")->needs(digits);
   add_scene_options(*c, o->opening);
-  c->footer("Without --family and --scene: every family. Exit code 1 when a law is broken.");
+  c->footer("Without --family and --scene: every family. Ctrl-C keeps what was checked. Exit code 1 when a law is broken.");
   c->callback([=, &run] { run = [=] { return o->digits ? digits_of(*o) : check(*o); }; });
 }
 

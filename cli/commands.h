@@ -11,7 +11,7 @@ class Command;
 namespace delassus::cli {
 
 /// Exit codes of the program (main.cpp turns ModelError and wrong usage into bad_input).
-enum Exit : int { good = 0, law_broken = 1, bad_input = 2, slower = 3 };
+enum Exit : int { good = 0, law_broken = 1, bad_input = 2, slower = 3, stopped_early = 130 };
 
 using Run = std::function<int()>;
 

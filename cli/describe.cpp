@@ -10,6 +10,7 @@
 #include "cli/common.h"
 #include "cli/describe_robot.h"
 #include "cli/effects.h"
+#include "cli/names.h"
 #include "property_tests/options.h"
 
 namespace delassus::cli {
@@ -62,6 +63,17 @@ json constraints_json(const Model& model) {
   return out;
 }
 
+/// [{joint, type, q}] at the configuration of the scene, after assembly.
+json configuration_json(const Scene& scene) {
+  json out = json::array();
+  for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
+    const Joint& joint = scene.model.bodies[i].joint;
+    const auto first = scene.q.begin() + scene.model.first_q[i], end = scene.q.begin() + scene.model.first_q[i + 1];
+    out.push_back({{"joint", joint.name.empty() ? scene.model.bodies[i].name : joint.name}, {"type", name(joint.type)}, {"q", std::vector<double>(first, end)}});
+  }
+  return out;
+}
+
 /// Per loop what is left open, per joint how far it was moved.
 json assembly_json(const Scene& scene) {
   const Assembly& a = scene.assembly;
@@ -79,7 +91,7 @@ json describe_json(const Scene& scene) {
   const auto structure = structure_of(scene.model);
   const bench::SceneResult facts = bench::facts_of(scene, false);
   json j = {{"scene", scene.name}, {"bodies", facts.bodies}, {"dof", facts.dofs}, {"rows", facts.rows},
-            {"trees", facts.trees}, {"summary", facts.summary}, {"constraints", constraints_json(scene.model)},
+            {"trees", facts.trees}, {"summary", facts.summary}, {"constraints", constraints_json(scene.model)}, {"configuration", configuration_json(scene)},
             {"robots", robots_json(scene)}, {"damping", damping_json(scene.damping)}, {"effects", effects_json(scene)}, {"notes", facts.notes},
             {"warnings", warnings_json(scene)},
             {"provisional_pose", scene.provisional_pose},
@@ -100,6 +112,39 @@ std::string some(const json& list, std::size_t most) {
 
 void print_line(const char* key, const std::string& value) { std::printf("%-18s %s\n", key, value.c_str()); }
 
+constexpr std::size_t most_lines = 24;
+
+/// The first lines, then how many more there are.
+template <class Line> void print_list(const json& list, Line&& line) {
+  for (std::size_t i = 0; i < std::min(most_lines, list.size()); ++i) std::printf("  %s\n", line(list[i]).c_str());
+  if (list.size() > most_lines) std::printf("  … (%zu in all; --json lists them)\n", list.size());
+}
+
+/// Rows `first–last`, the constraint they belong to and its unit.
+void print_rows(const json& constraints, const Model& model) {
+  print_list(constraints, [&](const json& c) {
+    const Index first = c["row"], rows = c["rows"];
+    std::string name = row_name(model, first);
+    name = name.substr(0, name.rfind(", row "));
+    const std::string_view unit = row_units(model, first).force, last = rows > 0 ? row_units(model, first + rows - 1).force : "";
+    return bench::pad_right(std::to_string(first) + (rows > 1 ? "–" + std::to_string(first + rows - 1) : ""), 10) + name + "  [" + std::string(unit) +
+           (last != unit ? ", " + std::string(last) : "") + "]";
+  });
+}
+
+/// Joints with their coordinates, those at zero left out.
+void print_configuration(const json& configuration) {
+  json moved = json::array();
+  for (const json& j : configuration)
+    if (std::any_of(j["q"].begin(), j["q"].end(), [](const json& x) { return x != 0.0; })) moved.push_back(j);
+  std::printf("q%s\n", moved.empty() ? "                  0 at every joint" : "                  rad, m, quaternions w x y z; joints at 0 left out");
+  print_list(moved, [](const json& j) {
+    std::string text = bench::pad_right(j["joint"].get<std::string>(), 32);
+    for (const json& x : j["q"]) text += bench::format(" %.9g", x.get<double>());
+    return text;
+  });
+}
+
 void print_moves(const json& moves) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(moves.size(), 8); ++i) {
@@ -112,12 +157,13 @@ void print_moves(const json& moves) {
   if (!text.empty()) print_line("  moved", text);
 }
 
-void print_text(const json& j, bool joints_too) {
+void print_text(const json& j, const Model& model, bool joints_too) {
   print_line("scene", j["scene"]);
   print_line("bodies", j["bodies"].dump() + " in " + j["trees"].dump() + " tree(s)");
   print_line("dofs", j["dof"].dump());
   print_robots(j["robots"], joints_too);
   print_line("rows", j["rows"].dump() + ": " + j["summary"].get<std::string>());
+  print_rows(j["constraints"], model);
   print_line("damping [1/kg]", j["damping"].is_array() ? "per row (--json lists it)" : j["damping"].dump());
   if (j["loops"]["any"].get<bool>()) {
     print_line("loops", bench::format("largest closure error %.2e after %d steps of assembly, %.2e before [m or rad]",
@@ -125,6 +171,7 @@ void print_text(const json& j, bool joints_too) {
                                       j["loops"]["residual_before"].get<double>()));
     print_moves(j["loops"]["moves"]);
   }
+  print_configuration(j["configuration"]);
   for (const char* matrix : {"M", "M_R"}) {
     const json& plan = j["elimination"][matrix];
     print_line(matrix == std::string("M") ? "elimination of M" : "of M + Jᵀ R J",
@@ -152,7 +199,7 @@ int describe(const std::string& name, const SceneOptions& opening, bool as_json)
   const Scene scene = open(name, opening);
   const json j = describe_json(scene);
   if (as_json) std::printf("%s\n", j.dump(1).c_str());
-  else print_text(j, scene.is_robot_file);
+  else print_text(j, scene.model, scene.is_robot_file);
   return good;
 }
 

@@ -1,5 +1,5 @@
 // The program `delassus`: exit codes 0 ok, 1 a law is broken or a numerical outcome is not ok, 2 bad input or usage,
-// 3 slower than the baseline.
+// 3 slower than the baseline, 130 ended by Ctrl-C with nothing broken so far.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   options::Command app{"Matrix-free Delassus operators of articulated rigid bodies: A = J M⁻¹ Jᵀ + R⁻¹."};
   app.require_subcommand();
   app.footer("Exit codes: 0 ok, 1 a law is broken (or a solve did not end well), 2 bad input or usage, "
-             "3 slower than the baseline.");
+             "3 slower than the baseline, 130 ended by Ctrl-C (what was computed is printed).");
   limit_memory();
   delassus::laws::count_allocations();
   Run run;

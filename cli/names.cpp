@@ -22,6 +22,30 @@ std::string part(Index at, Index of, const char* what) {
   return of == 1 ? "" : ", " + std::string(what) + " " + std::to_string(at + 1) + " of " + std::to_string(of);
 }
 
+/// Angular degrees of freedom, which come first.
+Index turning_dofs(JointType type) {
+  switch (type) {
+    case JointType::prismatic: return 0;
+    case JointType::universal: return 2;
+    case JointType::spherical: return 3;
+    case JointType::floating: return 3;
+    default: return 1;
+  }
+}
+
+/// Angular rows of a constraint between bodies, which come first.
+Index turning_rows(Constraint::Kind kind) {
+  switch (kind) {
+    case Constraint::Kind::weld:
+    case Constraint::Kind::prismatic: return 3;
+    case Constraint::Kind::hinge:
+    case Constraint::Kind::cylindrical:
+    case Constraint::Kind::planar: return 2;
+    case Constraint::Kind::universal: return 1;
+    default: return 0;
+  }
+}
+
 }  // namespace
 
 std::string row_name(const Model& model, Index row) {
@@ -32,6 +56,26 @@ std::string row_name(const Model& model, Index row) {
     first += rows;
   }
   return "no constraint";
+}
+
+Units row_units(const Model& model, Index row) {
+  constexpr Units turning{"rad/s²", "N m"}, sliding{"m/s²", "N"};
+  const auto joint = [&](Index body, Index dof) {
+    const JointType type = model.bodies[static_cast<std::size_t>(body)].joint.type;
+    return dof < turning_dofs(type) ? turning : sliding;
+  };
+  Index first = 0;
+  for (const Constraint& c : model.constraints) {
+    const Index rows = row_count(model, c), at = row - first;
+    first += rows;
+    if (row >= first) continue;
+    if (c.kind == Constraint::Kind::general) break;
+    if (c.kind == Constraint::Kind::coupling) return c.terms.empty() ? sliding : joint(c.terms[0].body, c.terms[0].dof);
+    if (c.kind == Constraint::Kind::joint_limit) return joint(c.a.body, c.dof);
+    if (acts_on_joint(c.kind)) return joint(c.a.body, at);
+    return at < turning_rows(c.kind) ? turning : sliding;
+  }
+  return {"", ""};
 }
 
 std::string joint_name(const Model& model, Index dof) {

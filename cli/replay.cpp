@@ -1,4 +1,5 @@
 // `delassus replay`: a failure found by `stress`, or any spec, built again and held against the laws.
+#include <algorithm>
 #include <cstdio>
 
 #include "bench/text.h"
@@ -36,8 +37,8 @@ json outcome_json(const laws::Outcome& o) {
           {"bound", o.verdict.bound}, {"note", o.verdict.note}, {"holds", o.passed()}};
 }
 
-void print(const laws::Outcome& o) {
-  const std::string what = bench::pad_right(std::string(o.op), 16) + bench::pad_right(std::string(o.law), 36);
+void print(const laws::Outcome& o, std::size_t width) {
+  const std::string what = bench::pad_right(std::string(o.op), width) + "  " + bench::pad_right(std::string(o.law), 36);
   if (o.skipped) std::printf("- %s not checked: %s\n", what.c_str(), o.skipped);
   else
     std::printf("%s %s %8s  %s\n", o.failed() ? "✗" : "✓", what.c_str(), bench::three_digits(o.verdict.ratio).c_str(),
@@ -53,14 +54,17 @@ int replay(const Options& o) {
   const laws::Case c = laws::make_case(asked.spec);
   int failed = 0, checked = 0;
   json out = json::array();
-  for (const OperatorRow* op : chosen_operators(ops, o.defect))
+  const std::vector<const OperatorRow*> chosen = chosen_operators(ops, o.defect);
+  std::size_t width = 0;
+  for (const OperatorRow* op : chosen) width = std::max(width, op->name.size());
+  for (const OperatorRow* op : chosen)
     for (const laws::LawRow& row : laws::laws()) {
       if (!law.empty() && row.name != law) continue;
       const laws::Outcome x = laws::check(row, *op, c);
       failed += x.failed() ? 1 : 0;
       checked += x.skipped ? 0 : 1;
       out.push_back(outcome_json(x));
-      if (!o.as_json) print(x);
+      if (!o.as_json) print(x, width);
     }
   if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
   else std::printf("%s: %d checked, %d failed\n", c.label.c_str(), checked, failed);

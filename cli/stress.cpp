@@ -7,6 +7,7 @@
 
 #include "bench/text.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/stress_json.h"
 #include "generators/classes.h"
 #include "property_tests/defects.h"
@@ -165,11 +166,13 @@ int merge(const Options& o) {
 int stress(const Options& o) {
   if (!o.merge.empty()) return merge(o);
   laws::Search s = search_of(o);
+  keep_on_interrupt();
+  s.stop = interrupted;
   if (!o.as_json) {
     std::printf("seed %llu, shard %d/%d\n", static_cast<unsigned long long>(s.seed), s.shard, s.shards);
     s.progress = print_progress;
   }
-  return conclude(laws::search(s), o);
+  return end_of_run(conclude(laws::search(s), o), "the search ends before its time");
 }
 
 }  // namespace
@@ -188,7 +191,7 @@ void add_stress(options::Command& app, Run& run) {
   c->add_option("--report", o->report, "write what was done as JSON; {shard} in the name becomes the shard's number");
   c->add_option("--merge", o->merge, "put reports of shards together instead of searching");
   c->add_flag("--json", o->as_json, "print {seed, shard, shards, problems, checks, skipped, seconds, classes, failures}, the report of --report with the `file` of every failure");
-  c->footer("Exit code 1 when a law is broken; the failure is shrunk, written, and the command that replays it printed.");
+  c->footer("Ctrl-C keeps what was found. Exit code 1 when a law is broken; the failure is shrunk, written, and the command that replays it printed.");
   c->callback([=, &run] { run = [=] { return stress(*o); }; });
 }
 

@@ -1,15 +1,14 @@
 // `delassus survey DIR`: which robots of a folder load, which with warnings, which not and why; M, J and J M⁻¹ Jᵀ of each
 // against an independent reading.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 
 #include "bench/text.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/survey_file.h"
 #include "property_tests/isolated.h"
 #include "property_tests/options.h"
@@ -28,7 +27,6 @@ struct Options {
   bool as_json = false, all = false;
 };
 
-std::atomic<bool> stopped{false};
 
 std::vector<std::string> files_under(const std::string& folder) {
   std::error_code error;
@@ -172,26 +170,26 @@ int survey(const Options& o) {
   const std::vector<std::string> files = files_under(o.folder);
   if (files.empty()) throw ModelError("", "survey", "'" + o.folder + "' holds no robot", "files .urdf, .sdf or MJCF .xml in it or below; expand .xacro files first");
   std::fprintf(stderr, "%zu files\n", files.size());
-  std::signal(SIGINT, [](int) { stopped = true; });
+  keep_on_interrupt();
   json all = json::array();
   Totals totals;
   for (const std::string& file : files) {
     json j = survey_one(file, o);
-    if (stopped) break;
+    if (interrupted()) break;
     std::fprintf(stderr, "\r%zu of %zu", all.size() + 1, files.size());
     totals.add(j);
     all.push_back(std::move(j));
   }
   std::fprintf(stderr, "\n");
-  if (stopped) std::fprintf(stderr, "stopped: what follows is about the first %zu files\n", all.size());
-  if (o.as_json) std::printf("%s\n", json({{"files", all}, {"totals", totals_json(totals)}, {"stopped", stopped.load()}}).dump(1, ' ', false, json::error_handler_t::replace).c_str());
+  if (interrupted()) std::fprintf(stderr, "stopped: what follows is about the first %zu files\n", all.size());
+  if (o.as_json) std::printf("%s\n", json({{"files", all}, {"totals", totals_json(totals)}, {"stopped", interrupted()}}).dump(1, ' ', false, json::error_handler_t::replace).c_str());
   else {
     print_rows(all, o.all);
     print_kinds("warnings by kind", totals.warnings);
     print_kinds("refusals by kind", totals.refusals);
     print_totals(totals, o.file.poses > 0);
   }
-  return totals.differ > 0 ? law_broken : good;
+  return end_of_run(totals.differ > 0 ? law_broken : good, "files are left");
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ struct SceneOptions {
 [[nodiscard]] Scene load_robot(const std::string& path, const SceneOptions& options = {});
 
 /// Opens a path to a .yaml file or a robot's file (any that begins with `<`), the stem of a file in models/scenes, or
-/// "swimmer:N" (N ≥ 1 links). Stems are looked up in ./models/scenes, then in the source tree, then where the models were
-/// installed. @throws ModelError listing the known names; when base or armature are given for anything but a robot's file.
+/// "swimmer:N" (N ≥ 1 links). Stems are looked up in ./models/scenes, then where this library or program was installed,
+/// then in the source tree. @throws ModelError listing the known names; when base or armature are given for anything but a robot's file.
 [[nodiscard]] Scene open_scene(const std::string& name, const SceneOptions& options = {});
 
 /// The stems of the scene files that come with the library, in the order of models/scenes/index.yaml.

@@ -1,3 +1,5 @@
+#include <dlfcn.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -12,11 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where an installation has its scenes, from where this code was loaded: the shared library, or the program.
+std::vector<fs::path> installed_folders() {
+  std::error_code error;
+  std::vector<fs::path> out;
+  Dl_info library;
+  static const char here = 0;
+  if (dladdr(&here, &library) && library.dli_fname) out.push_back(fs::path(library.dli_fname).parent_path() / DELASSUS_SCENES_FROM_LIBRARY);
+  out.push_back(fs::read_symlink("/proc/self/exe", error).parent_path() / DELASSUS_SCENES_FROM_PROGRAM);
+  return out;
+}
+
 /// The first of the known places that has an index of scenes; empty when none has.
 fs::path scene_folder() {
   std::error_code error;
-  for (const char* place : {"models/scenes", DELASSUS_SCENES_SOURCE, DELASSUS_SCENES_INSTALLED})
-    if (fs::is_regular_file(fs::path(place) / "index.yaml", error)) return place;
+  std::vector<fs::path> places = installed_folders();
+  places.insert(places.begin(), "models/scenes");
+  places.push_back(DELASSUS_SCENES_SOURCE);
+  for (const fs::path& place : places)
+    if (fs::is_regular_file(place / "index.yaml", error)) return place.lexically_normal();
   return {};
 }
 

@@ -93,7 +93,7 @@ with tempfile.TemporaryDirectory() as name:
 consistent = solved("cassie", *hard, "--rhs", "consistent")
 expect("cassie: ok", consistent["report"]["status"] == "ok" and 0 <= consistent["report"]["error_bound"] < 30 * EPS)
 expect("cassie: 4 of 24 rows", len(consistent["dependent_rows"]) == 4 and consistent["rows"] == 24)
-expect("cassie: ones contradict", solved("cassie", *hard)["report"]["status"] == "inconsistent")
+expect("cassie: ones contradict", solved("cassie", *hard, "--rhs", "ones")["report"]["status"] == "inconsistent")
 
 # Stiff and redundant: all digits are there, and the status says so.
 with tempfile.TemporaryDirectory() as name:

@@ -4,9 +4,11 @@ judges_test.py BUILD_DIR
 """
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 delassus = pathlib.Path(sys.argv[1]) / "cli/delassus"
 failures = []
@@ -71,6 +73,13 @@ expect("check: what is broken has a ratio of 30 or more, what is not has less",
 text = run("check", *FAMILY, *DEFECT, code=1)
 expect("check: as many marks as broken laws", text.count("✗") == sum(law["failed"] > 0 for op in wrong for law in op["laws"]))
 expect("check: how many failed", f"1 cases, {failed(wrong)} failed" in text)
+lines = run("check", *FAMILY, *DEFECT, "--all", code=1)
+expect("check --all: every law", all(law["law"] in lines for op in wrong for law in op["laws"]) and lines.count("✗") == text.count("✗"))
+summary = run("check", *FAMILY, "--op", "dense_cholesky", "--op", "lcaba").split("\n")
+worst_of = max((law for law in right[0]["laws"] if law["checked"]), key=lambda law: law["worst_ratio"])
+expect(f"check: one line per operator: {summary}", len(summary) == 6 and [line.split()[0] for line in summary[2:4]] == ["dense_cholesky", "lcaba"]
+       and summary[2].split()[1:4] == [str(sum(bool(law[key]) for law in right[0]["laws"])) for key in ("checked", "failed")]
+       + [str(sum(not law["checked"] for law in right[0]["laws"]))] and worst_of["law"] in summary[2])
 expect("check: a mark without a broken law", "✗" not in run("check", *FAMILY, "--op", "dense_cholesky"))
 
 
@@ -125,8 +134,18 @@ with tempfile.TemporaryDirectory() as name:
     full, fast = (data("apply", "cassie", "--op", "lcaba_refined", "--solve", "--json", "--accuracy", a)["report"] for a in ("0", "inf"))
     expect("apply --accuracy", full["error_bound"] is not None and fast["error_bound"] is None and fast["iterations"] == 0)
     text = run("apply", scene, "--op", op, *given)
-    lines = [line.split() for line in text.split("\n")[2:2 + m]]
-    expect("apply prints what it computed", [[float(a), float(b)] for _, a, b in lines] == [list(pair) for pair in zip(x, of_x["output"])])
+    lines = [line.split(None, 5) for line in text.split("\n")[3:3 + m]]
+    expect("apply prints what it computed", [[float(a), float(b)] for _, a, _, b, _, _ in lines] == [list(pair) for pair in zip(x, of_x["output"])])
+    expect("apply says what the numbers are", "read from" in text.split("\n")[1]
+           and all((u, v, name) == ("N", "m/s²", of_x["row_names"][k]) for k, (_, _, u, _, v, name) in enumerate(lines)))
+    turning = folder / "turning.yaml"
+    turning.write_text("boxes:\n  - {name: b, mass: 2, size: [1, 1, 1]}\nconstraints:\n  - {kind: weld, of: b, at: [0, 0, 0], to: world}\ngravity: [0, 0, -10]\ndamping: 0\n")
+    held = data("apply", turning, "--op", "ladder", "--solve", "--json")
+    expect("apply: rows that turn", held["row_units"] == [["rad/s²", "N m"]] * 3 + [["m/s²", "N"]] * 3)
+    expect(f"apply: the weight of a box, 20 N: {held['output']}", close(held["input"], [0, 0, 0, 0, 0, 10]) and close(held["output"], [0, 0, 0, 0, 0, 20]) and "gravity" in held["input_is"])
+    expect("apply --rhs ones", data("apply", turning, "--op", "ladder", "--solve", "--json", "--rhs", "ones")["input"] == [1] * 6)
+    limp = data("apply", "go2_standing", "--op", "ladder", "--solve", "--json")
+    expect("apply: what falls freely needs 9.81 m/s² along normals alone", close(limp["input"], [9.81, 0, 0] * 4) and all(f > 0 for f in limp["output"][::3]))
     run("apply", scene, "--op", "lcaba", "--solve", "--damping", 0, code=1)  # no answer
 
     # bench: every phase there is has a time and a count; what was not measured has none; slower or more work than before is said.
@@ -186,6 +205,36 @@ with tempfile.TemporaryDirectory() as name:
     expect("report: broken laws are on the page", f"✗ {len(broken)}<" in page and "all hold" not in page and page.count("<li><code>one_part_in_1e10 · go2_standing") == len(broken))
     said = run("report", "--out", out, "--scene", "go2_standing", "--op", "lcaba", "--quick", "--no-check")
     expect("report --no-check", "0 law checks" in said and " hold" not in said)
+
+    # describe: the configuration and the rows by name.
+    text, told = run("describe", "cassie"), data("describe", "cassie", "--json")
+    moved = [j for j in told["configuration"] if any(j["q"])]
+    expect("describe: q after assembly", [x for j in told["configuration"] for x in j["q"]] == data("export", "cassie")["q"]
+           and all(j["joint"] in text and f"{j['q'][0]:.9g}" in text for j in moved[:20]))
+    expect("describe: rows by name", all(c["name"] in text for c in told["constraints"] if c.get("name")) and "[N]" in text)
+
+    # Ctrl-C keeps what was computed, and says so by the exit code.
+    def interrupt(*command, after=1.5):
+        process = subprocess.Popen([str(word) for word in (delassus, *command)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(after)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+        expect(f"{command[0]} after Ctrl-C: exit code {process.returncode}: {err[-200:]}", process.returncode == 130 and "interrupted" in err)
+        return out
+
+    found = json.loads(interrupt("stress", "--seed", 1, "--time", "200s", "--json", "--op", "lcaba", "--folder", folder))
+    expect("stress after Ctrl-C", 0 < found["problems"] and found["seconds"] < 100)
+    expect("check after Ctrl-C", "failed of" in interrupt("check"))
+    expect("accuracy after Ctrl-C", json.loads(interrupt("accuracy", "--json", "--no-time", *["cassie", "g1_standing"] * 40)))
+    interrupt("report", "--out", folder / "cut", "--quick", "--op", "lcaba")
+    cut = json.loads((folder / "cut" / "results.json").read_text())
+    expect("report after Ctrl-C", cut["interrupted"] and "all hold" not in (folder / "cut" / "index.html").read_text())
+
+    # report --out BAD: refused before anything is measured.
+    (folder / "file").write_text("")
+    start = time.monotonic()
+    run("report", "--out", folder / "file" / "below", code=2)
+    expect("report --out BAD at once", time.monotonic() - start < 10)
 
 for failure in failures:
     print("FAILED", failure)

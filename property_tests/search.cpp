@@ -103,6 +103,7 @@ Found search(const Search& s) {
   double told = 0;
   for (auto k = static_cast<std::int64_t>(s.shard - 1); found.failures.size() < s.most_failures; k += s.shards) {
     if (s.count > 0 ? k >= s.count : clock.seconds() >= s.seconds) break;
+    if (s.stop && s.stop()) break;
     check_problem(s, s.seed + static_cast<std::uint64_t>(k), broken, found);
     found.seconds = clock.seconds();
     if (!s.progress || found.seconds < told + s.every) continue;

@@ -44,6 +44,7 @@ struct Search {
   std::string_view left_out;      ///< a law not held against them; empty: none
   std::function<void(const Found&)> progress;   ///< called about every `every` seconds
   double every = 5;
+  std::function<bool()> stop;   ///< looked at before every problem
 };
 
 /// Runs until the time, the count or the failures are reached. Cost: hundreds of problems per second.

@@ -11,6 +11,7 @@
 #include "bench/growth.h"
 #include "bench/page.h"
 #include "bench/report.h"
+#include "bench/verify.h"
 #include "generators/build.h"
 #include "generators/families.h"
 
@@ -139,7 +140,7 @@ TEST(Growth, OnlyLinearGrowthPasses) {
   EXPECT_FALSE(no_work({0, 0, 1}) || no_work({-1, -1, -1}) || no_work({}));
 }
 
-LawResult law(const char* name, double ratio, bool passed, const char* skipped = "") { return {name, ratio, passed, skipped, ""}; }
+LawResult law(const char* name, double ratio, bool passed, const char* skipped = "") { return {name, ratio, passed, skipped, "", false}; }
 
 /// Two scenes and two operators: three laws hold, two are broken, one of them without a ratio, two were not checked.
 Results some_results() {
@@ -165,7 +166,7 @@ TEST(Results, BrokenLawsAreCountedAndShown) {
   const Results r = some_results();
   EXPECT_EQ(r.checked(), 5);
   EXPECT_EQ(r.failed(), 2);
-  EXPECT_EQ(r.unchecked(), 1);
+  EXPECT_EQ(r.left_out(), 0) << "what does not apply is not left out";
   EXPECT_EQ(exit_code(r), 1);
   EXPECT_EQ(r.scenes[0].cells[0].worst()->law, "b");
   EXPECT_TRUE(std::isinf(r.scenes[0].cells[1].worst()->ratio)) << "no ratio is the worst";
@@ -191,6 +192,62 @@ TEST(Results, BrokenLawsAreCountedAndShown) {
   EXPECT_EQ(times(html, "Laws that failed"), 1);
   EXPECT_EQ(times(html, "<li><code>first · scene_a · b</code>"), 1);
   EXPECT_EQ(times(html, "<li><code>second · scene_a · a</code>"), 1);
+}
+
+TEST(Results, WhatWasLeftOutIsSaidWithItsCommand) {
+  Results r = some_results();
+  for (SceneResult& s : r.scenes)
+    for (Cell& c : s.cells) std::erase_if(c.laws, [](const LawResult& l) { return !l.passed; });
+  r.scenes[0].cells[1].laws.push_back({"x = definition", 3, true, "", "", false});
+  EXPECT_NE(page(r).find("all hold"), std::string::npos);
+  r.scenes[0].cells[1].laws.push_back({"c", 0, true, "no time left", "", true});
+  EXPECT_EQ(r.left_out(), 1);
+  EXPECT_EQ(r.checked(), 4);
+  const std::string html = page(r);
+  EXPECT_EQ(html.find("all hold"), std::string::npos);
+  EXPECT_NE(html.find("1 laws left out: <code>delassus check scene_a --op second</code>"), std::string::npos);
+  EXPECT_NE(html.find("<b>scene_a</b>: held by laws of identical bits alone, too large for the bounds of the others: first;"), std::string::npos);
+  EXPECT_NE(text_table(r).find("1 left out"), std::string::npos);
+  r.scenes[0].cells[1].laws.pop_back();
+  r.interrupted = true;
+  EXPECT_EQ(page(r).find("all hold"), std::string::npos);
+}
+
+TEST(Verify, TheDefaultAndTheDefinitionsComeFirst) {
+  const std::vector<const OperatorRow*> ops{&find_operator("dense_cholesky"), &find_operator("ladder")};
+  const auto held = [&](const Deadline& deadline) {
+    std::vector<SceneResult> results{scene("swimmer:1")};
+    for (const OperatorRow* op : ops) results[0].cells.emplace_back().op = std::string(op->name);
+    verify({open_scene("swimmer:1")}, ops, deadline, results, [](const SceneResult&) {});
+    return results[0].cells;
+  };
+  const auto all = held({600}), late = held({0}), none = held({600, [n = 0]() mutable { return n++ > 0; }});
+  EXPECT_EQ(all[0].left_out() + all[1].left_out(), 0);
+  EXPECT_EQ(late[1].left_out(), 0) << "the default is held whatever it takes";
+  EXPECT_EQ(late[1].checked(), all[1].checked());
+  EXPECT_EQ(late[0].left_out(), all[0].checked() - late[0].checked()) << "what applies and what does not are told apart";
+  for (const LawResult& l : late[0].laws) EXPECT_EQ(l.skipped.empty(), l.law.find("= definition") != std::string::npos && l.law.rfind("exact", 0) != 0) << l.law;
+  EXPECT_EQ(none[1].left_out(), all[1].checked());
+  EXPECT_EQ(none[1].checked(), 0);
+}
+
+TEST(Cell, ATimeWithoutAnAnswerIsNone) {
+  Cell c;
+  c.update_status = c.solve_status = "ok";
+  EXPECT_TRUE(c.answered(&Phases::update) && c.answered(&Phases::solve));
+  c.solve_status = "not_converged";
+  EXPECT_TRUE(c.answered(&Phases::update) && c.answered(&Phases::apply));
+  EXPECT_FALSE(c.answered(&Phases::solve));
+  c.update_status = "lost_pivot";
+  for (const auto phase : {&Phases::update, &Phases::new_damping, &Phases::apply, &Phases::solve}) EXPECT_FALSE(c.answered(phase));
+  EXPECT_TRUE(c.answered(&Phases::analyze));
+  Results r;
+  r.operators.emplace_back().name = "op";
+  r.scenes.push_back(scene("s"));
+  c.time.solve = {1, 1, 3};
+  r.scenes[0].cells.push_back(c);
+  EXPECT_EQ(overview_section(r).find("class=\"fast\""), std::string::npos) << "no answer is not the fastest";
+  EXPECT_NE(overview_section(r).find("lost_<wbr>pivot"), std::string::npos);
 }
 
 TEST(Results, LawsThatHoldAreNotFailed) {
