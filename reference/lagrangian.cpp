@@ -22,17 +22,24 @@ matrix rate_of(const Mechanism& m, const matrix& f) {
   return out;
 }
 
-/// Σ_ij Ṙ_ij (Ṙ P)_ij / 2 = ½ tr(Ṙ P Ṙᵀ).
-ex turning_energy(const matrix& R_rate, const matrix& inertia) {
+/// tr(X P Yᵀ) = Σ_ij Y_ij (X P)_ij with P = ½ tr(I) 1 − I.
+ex trace_product(const matrix& X, const matrix& Y, const matrix& inertia) {
   const ex trace = inertia(0, 0) + inertia(1, 1) + inertia(2, 2);
   matrix P(3, 3);
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j) P(i, j) = (i == j ? trace / 2 : ex(0)) - inertia(i, j);
-  const matrix RP = R_rate.mul(P);
+  const matrix XP = X.mul(P);
   ex sum = 0;
   for (unsigned i = 0; i < 3; ++i)
-    for (unsigned j = 0; j < 3; ++j) sum += R_rate(i, j) * RP(i, j);
-  return sum / 2;
+    for (unsigned j = 0; j < 3; ++j) sum += Y(i, j) * XP(i, j);
+  return sum;
+}
+
+matrix derivative(const matrix& f, const GiNaC::symbol& by) {
+  matrix out(f.rows(), f.cols());
+  for (unsigned i = 0; i < f.rows(); ++i)
+    for (unsigned j = 0; j < f.cols(); ++j) out(i, j) = f(i, j).diff(by);
+  return out;
 }
 
 /// A double, exactly, carried to `digits` digits.
@@ -108,7 +115,8 @@ ex kinetic_energy(const Mechanism& m) {
   for (const RigidBody& body : m.bodies) {
     const matrix v = rate_of(m, body.com);
     for (unsigned k = 0; k < 3; ++k) T += body.mass * v(k, 0) * v(k, 0) / 2;
-    T += turning_energy(rate_of(m, body.rotation), body.inertia);
+    const matrix R_rate = rate_of(m, body.rotation);
+    T += trace_product(R_rate, R_rate, body.inertia) / 2;
   }
   for (std::size_t k = 0; k < m.nu.size(); ++k) T += m.armature[k] * m.nu[k] * m.nu[k] / 2;
   return T;
@@ -134,8 +142,30 @@ Derived derive(const Mechanism& m) {
   return out;
 }
 
+Bias bias(const Mechanism& m, const matrix& g) {
+  const unsigned n = static_cast<unsigned>(m.nu.size());
+  unsigned rows = 0;
+  for (const Rows& r : m.rows) rows += r.phi.rows();
+  Bias out{matrix(n, 1), matrix(rows, 1)};
+  for (const RigidBody& body : m.bodies) {
+    const matrix v = rate_of(m, body.com), a = rate_of(m, v).sub(g);
+    const matrix R_rate = rate_of(m, body.rotation), R_second = rate_of(m, R_rate);
+    for (unsigned k = 0; k < n; ++k) {
+      const matrix along = derivative(v, m.nu[k]);
+      for (unsigned c = 0; c < 3; ++c) out.forces(k, 0) += body.mass * a(c, 0) * along(c, 0);
+      out.forces(k, 0) += trace_product(R_second, derivative(R_rate, m.nu[k]), body.inertia);
+    }
+  }
+  unsigned first = 0;
+  for (const Rows& r : m.rows) {
+    const matrix second = rate_of(m, r.axes.transpose().mul(rate_of(m, r.phi)));
+    for (unsigned i = 0; i < second.rows(); ++i) out.rows(first++, 0) = second(i, 0);
+  }
+  return out;
+}
+
 Numbers::Numbers(const Mechanism& m, const Derived& derived, const std::vector<double>& parameters,
-                 const VectorX<double>& q) {
+                 const VectorX<double>& q) : nu_(m.nu) {
   if (parameters.size() != m.parameters.size() || q.size() != static_cast<Index>(m.q.size()))
     throw std::logic_error("lagrangian: the numbers do not fit mechanism " + m.name);
   for (std::size_t k = 0; k < parameters.size(); ++k) values_[m.parameters[k].symbol] = wide(parameters[k]);
@@ -164,6 +194,13 @@ MatrixX<Quad> Numbers::M() const { return narrow(M_); }
 MatrixX<Quad> Numbers::J() const { return narrow(J_); }
 MatrixX<Quad> Numbers::lambda_inverse() const { return narrow(lambda_inverse_); }
 MatrixX<Quad> Numbers::evaluate(const matrix& expressions) const { return narrow(substitute(expressions)); }
+
+MatrixX<Quad> Numbers::evaluate(const matrix& expressions, const VectorX<double>& nu) const {
+  if (nu.size() != static_cast<Index>(nu_.size())) throw std::logic_error("lagrangian: ν needs one number per degree of freedom");
+  GiNaC::exmap velocities;
+  for (Index k = 0; k < nu.size(); ++k) velocities[nu_[static_cast<std::size_t>(k)]] = wide(nu[k]);
+  return evaluate(GiNaC::ex_to<matrix>(ex(expressions).subs(velocities, GiNaC::subs_options::no_pattern)));
+}
 
 VectorX<Quad> Numbers::apply(const std::vector<double>& R_inverse, const VectorX<double>& x) const {
   return narrow(damped(R_inverse).mul(column(x))).col(0);

@@ -6,6 +6,7 @@
 //   energy       T = Σ ½ ∫ |ċ + Ṙ x|² dm + Σ ½ A_k ν_k² = Σ ½ m ċ·ċ + Σ ½ tr(Ṙ P Ṙᵀ) + Σ ½ A_k ν_k²
 //   inertia      M = ∂²T / ∂ν ∂ν
 //   constraints  J = E(q)ᵀ ∂φ̇/∂ν, with E the axes in which a constraint's rows are taken
+//   bias         c_k = Σ m (c̈ − g)·∂ċ/∂ν_k + Σ tr(R̈ P (∂Ṙ/∂ν_k)ᵀ) at ν̇ = 0 (d'Alembert),   J̇ν = d/dt (Eᵀφ̇) at ν̇ = 0
 //   operator     Λ⁻¹ = J M⁻¹ Jᵀ,  A = Λ⁻¹ + R⁻¹,  Λ_R = A⁻¹
 //
 // Of algorithms/ only the scalar Quad and the matrix types are used. Trusted for small mechanisms: the expressions grow
@@ -85,6 +86,12 @@ struct Derived {
 [[nodiscard]] GiNaC::ex rate(const Mechanism& mechanism, const GiNaC::ex& f);
 [[nodiscard]] Derived derive(const Mechanism& mechanism);
 
+/// c (n × 1) and J̇ν (m × 1), expressions in q and ν; g (3×1): acceleration of gravity, world axes. No armature: it has no bias.
+struct Bias {
+  GiNaC::matrix forces, rows;
+};
+[[nodiscard]] Bias bias(const Mechanism& mechanism, const GiNaC::matrix& g);
+
 /// The expressions evaluated to 60 digits at given numbers.
 class Numbers {
  public:
@@ -104,11 +111,14 @@ class Numbers {
   [[nodiscard]] VectorX<Quad> solve(const std::vector<double>& R_inverse, const VectorX<double>& a) const;
   /// Any expression in the symbols of the mechanism, at these numbers.
   [[nodiscard]] MatrixX<Quad> evaluate(const GiNaC::matrix& expressions) const;
+  /// The same of expressions in ν too. @throws std::logic_error when ν does not fit.
+  [[nodiscard]] MatrixX<Quad> evaluate(const GiNaC::matrix& expressions, const VectorX<double>& nu) const;
 
  private:
   [[nodiscard]] GiNaC::matrix substitute(const GiNaC::matrix& expressions) const;
   [[nodiscard]] GiNaC::matrix damped(const std::vector<double>& R_inverse) const;
 
+  std::vector<GiNaC::symbol> nu_;
   GiNaC::exmap values_;
   GiNaC::matrix M_, J_, lambda_inverse_;
 };

@@ -70,6 +70,10 @@ template <class T> [[nodiscard]] inline Three<T> operator*(const ThreeByThree<T>
 template <class T> [[nodiscard]] inline ThreeByThree<T> operator*(const ThreeByThree<T>& m, const ThreeByThree<T>& x) {
   return {{m * x.column[0], m * x.column[1], m * x.column[2]}};
 }
+/// mᵀ x
+template <class T> [[nodiscard]] inline Three<T> transposed_times(const ThreeByThree<T>& m, const Three<T>& x) {
+  return three<T>(dot(m.column[0], x), dot(m.column[1], x), dot(m.column[2], x));
+}
 /// m xᵀ
 template <class T> [[nodiscard]] inline ThreeByThree<T> times_transposed(const ThreeByThree<T>& m, const ThreeByThree<T>& x) {
   ThreeByThree<T> y;

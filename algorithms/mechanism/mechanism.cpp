@@ -124,8 +124,9 @@ template <class T> void Mechanism<T>::compile_body(const Model& model, Index i) 
     j.axis3 = three<T>(Vector3<T>(P * second));
   }
   joints_.push_back(j);
-  solids_.push_back({body.mass == 0 && (body.inertia.array() == 0).all(), T(body.mass),
-                     three_by_three<T>(body.inertia.template cast<T>())});
+  Matrix3<T> inertia = body.inertia.template cast<T>();  // symmetric up to rounding: M and c(q, ν) take the same entries
+  inertia(1, 0) = inertia(0, 1), inertia(2, 0) = inertia(0, 2), inertia(2, 1) = inertia(1, 2);
+  solids_.push_back({body.mass == 0 && (body.inertia.array() == 0).all(), T(body.mass), three_by_three<T>(inertia)});
   for (std::size_t k = 0; k < body.joint.armature.size(); ++k)
     armature_[model.first_dof[i] + static_cast<Index>(k)] = T(body.joint.armature[k]);
 }
@@ -181,31 +182,9 @@ template <class T> void Mechanism<T>::poses(Poses<T>& out) const {
 
 // Columns of S about the reference point: every axis passes through the origin of the moved frame.
 template <class T> void Mechanism<T>::motion(const Joint& j, Index i, Vector6<T>* S) const {
-  const ThreeByThree<T>& R = rotation_[i];
   const Three<T> p = position_[i], none = three<T>(T(0), T(0), T(0));
-  const auto of_parent = [&](const Three<T>& x) { return j.parent == ground ? x : rotation_[j.parent] * x; };
-  const auto rotation = [&](const Three<T>& axis) { store((S++)->data(), axis, cross(p, axis)); };
-  const auto translation = [&](const Three<T>& axis) { store((S++)->data(), none, axis); };
-  switch (j.type) {
-    case JointType::revolute: rotation(of_parent(j.axis)); return;
-    case JointType::prismatic: translation(of_parent(j.axis)); return;
-    case JointType::universal: rotation(of_parent(j.axis)), rotation(R * j.axis2); return;
-    case JointType::planar:
-      rotation(of_parent(j.axis)), translation(of_parent(j.axis2)), translation(of_parent(j.axis3));
-      return;
-    case JointType::spherical:
-      for (const Three<T>& column : R.column) rotation(column);
-      return;
-    case JointType::floating:
-      for (const Three<T>& column : R.column) rotation(column);
-      for (const Three<T>& column : R.column) translation(column);
-      return;
-    case JointType::cylindrical: {
-      const Three<T> axis = of_parent(j.axis);
-      rotation(axis), translation(axis);
-      return;
-    }
-  }
+  axes(j, i, [&](const Three<T>& axis) { store((S++)->data(), axis, cross(p, axis)); },
+       [&](const Three<T>& axis) { store((S++)->data(), none, axis); });
 }
 
 // [R I Rᵀ + m (c·c 1 − c cᵀ), m ĉ; −m ĉ, m 1], symmetric to the bit
@@ -254,9 +233,11 @@ template <class T> void Mechanism<T>::fill(Problem<T>& out) const {
   for (const Terms& terms : terms_) term_rows(terms, out.S, out.K);
 }
 
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
 template class Mechanism<double>;
 template class Mechanism<float>;
 template class Mechanism<Quad>;
 template class Mechanism<Counted>;
+#endif
 
 }  // namespace delassus

@@ -14,6 +14,8 @@
 
 namespace delassus {
 
+template <class T> class Motion;
+
 template <class T> class Mechanism {
  public:
   /// @throws ModelError as structure_of.
@@ -32,6 +34,8 @@ template <class T> class Mechanism {
   void poses(Poses<T>& out) const;
 
  private:
+  friend class Motion<T>;  // reads joints, solids, rows and frames: motion.h
+
   struct Joint {
     JointType type;
     Index parent, tree, first_q, first_dof;
@@ -56,6 +60,7 @@ template <class T> class Mechanism {
   };
   struct Pair {
     Constraint::Kind kind;
+    Index row;
     End a, b;
   };
   struct Term {  // of a coupling or of user rows
@@ -74,6 +79,8 @@ template <class T> class Mechanism {
   void compile_body(const Model& model, Index i);
   void compile_constraint(const Model& model, const Constraint& c, const Structure::LinkConstraint& to, std::size_t e);
   Three<T> local(const Joint& joint, const T* q, ThreeByThree<T>& rotation) const;
+  template <class Rotation, class Translation>
+  void axes(const Joint& joint, Index i, Rotation rotation, Translation translation) const;
   void motion(const Joint& joint, Index i, Vector6<T>* S) const;
   void inertia(Index i, Matrix6<T>& H) const;
   [[nodiscard]] Three<T> position_of(const End& end) const;
@@ -92,5 +99,34 @@ template <class T> class Mechanism {
   std::vector<Three<T>> position_;         // from the tree's reference point
   std::vector<Three<T>> reference_;        // at roots
 };
+
+// The axes of a joint's degrees of freedom in their order, world: rotation(axis) through the origin of the moved frame,
+// translation(axis).
+template <class T>
+template <class Rotation, class Translation>
+void Mechanism<T>::axes(const Joint& j, Index i, Rotation rotation, Translation translation) const {
+  const ThreeByThree<T>& R = rotation_[i];
+  const auto of_parent = [&](const Three<T>& x) { return j.parent == ground ? x : rotation_[j.parent] * x; };
+  switch (j.type) {
+    case JointType::revolute: rotation(of_parent(j.axis)); return;
+    case JointType::prismatic: translation(of_parent(j.axis)); return;
+    case JointType::universal: rotation(of_parent(j.axis)), rotation(R * j.axis2); return;
+    case JointType::planar:
+      rotation(of_parent(j.axis)), translation(of_parent(j.axis2)), translation(of_parent(j.axis3));
+      return;
+    case JointType::spherical:
+      for (const Three<T>& column : R.column) rotation(column);
+      return;
+    case JointType::floating:
+      for (const Three<T>& column : R.column) rotation(column);
+      for (const Three<T>& column : R.column) translation(column);
+      return;
+    case JointType::cylindrical: {
+      const Three<T> axis = of_parent(j.axis);
+      rotation(axis), translation(axis);
+      return;
+    }
+  }
+}
 
 }  // namespace delassus

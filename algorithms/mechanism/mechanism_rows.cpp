@@ -69,7 +69,7 @@ void Mechanism<T>::compile_constraint(const Model& model, const Constraint& c, c
       return End{f.body, f.body == ground ? -1 : first_row(to, f.body), three_by_three<T>(rotation_as<T>(f.placement.rotation)),
                  three<T>(Vector3<T>(f.placement.translation.template cast<T>()))};
     };
-    pairs_.push_back({c.kind, end(c.a), end(c.b)});
+    pairs_.push_back({c.kind, to.row, end(c.a), end(c.b)});
     return;
   }
   Terms all{c.kind, e, {}};
@@ -156,6 +156,7 @@ void Mechanism<T>::term_rows(const Terms& all, const std::vector<Vector6<T>>& S,
   }
 }
 
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
 #define DELASSUS_INSTANTIATE(T)                                                                                                   \
   template void Mechanism<T>::compile_constraint(const Model&, const Constraint&, const Structure::LinkConstraint&, std::size_t); \
   template void Mechanism<T>::pair_rows(const Pair&, std::vector<Vector6<T>>&) const;                                             \
@@ -164,5 +165,7 @@ DELASSUS_INSTANTIATE(double)
 DELASSUS_INSTANTIATE(float)
 DELASSUS_INSTANTIATE(Quad)
 DELASSUS_INSTANTIATE(Counted)
+#undef DELASSUS_INSTANTIATE
+#endif
 
 }  // namespace delassus

@@ -11,11 +11,13 @@
 #include "algorithms/kit/test_scalars.h"
 #include "algorithms/mechanism/kinematics.h"
 #include "algorithms/mechanism/loop_closing.h"
+#include "algorithms/mechanism/motion.h"
 #include "property_tests/unit/lagrangian_bounds.h"
 #include "property_tests/unit/lagrangian_cases.h"
 #include "property_tests/verdict.h"
 #include "reference/lagrangian_page.h"
 #include "reference/lagrangian_simplify.h"
+#include "reference/lagrangian_sketch.h"
 #include "reference/sensitivity.h"
 
 namespace delassus::unit {
@@ -205,6 +207,55 @@ TEST_P(Lagrangian, SeesAWrongSignInJ) {
     for (Index r = 0; r < first.rows; ++r) problem.K[link.first + r].head<3>() *= Quad(-1);
   EXPECT_FALSE(verdict<Quad>(k_, s, model, problem).passed());
   EXPECT_FALSE(verdict<double>(k_, s, model, problem.cast<double>()).passed());
+}
+
+// ---- velocities ------------------------------------------------------------------------------------------------
+
+struct Moves {
+  MatrixX<Quad> forces, rows;
+};
+
+/// c(q, ν) and J̇ν in T.
+template <class T> Moves moves(const Known& k, const Sample& s, const Model& model, const Vector& nu, const Vector& g) {
+  delassus::Mechanism<T> mechanism(model);
+  Motion<T> motion(mechanism);
+  mechanism.update(converted<T>(library_q(k, s.q)));
+  motion.update(converted<T>(nu));
+  VectorX<T> c, rows;
+  motion.bias_forces(Vector3<T>(converted<T>(g)), c);
+  motion.bias_rows(rows);
+  const auto wide = [](const VectorX<T>& x) { return MatrixX<Quad>(x.unaryExpr([](const T& v) { return scalar_cast<Quad>(v); })); };
+  return {wide(c), wide(rows)};
+}
+
+Verdict same_in(double eps, const MatrixX<Quad>& x, const MatrixX<Quad>& y) {
+  Quad size(0);
+  for (const Quad& v : y.reshaped()) size = std::max(size, Quad(abs(v)));
+  return laws::judge(x - y, MatrixX<Quad>::Constant(x.rows(), 1, size), eps, "largest entry");
+}
+
+TEST_P(Lagrangian, BiasAgrees) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Sample s = sample(k_, seed);
+    Dice dice(100 + seed);
+    const Vector nu = dice.vector(static_cast<Index>(k_.mechanism.nu.size()), -2, 2), g = dice.vector(3, -10, 10);
+    const Numbers numbers(k_.mechanism, k_.derived, s.parameters, s.q);
+    const lagrangian::Bias exact = lagrangian::bias(k_.mechanism, lagrangian::point(g[0], g[1], g[2]));
+    const MatrixX<Quad> forces = numbers.evaluate(exact.forces, nu), rows = numbers.evaluate(exact.rows, nu);
+    const Model model = model_of(k_, s);
+    const Moves wide = moves<Quad>(k_, s, model, nu, g), in_double = moves<double>(k_, s, model, nu, g);
+    EXPECT_TRUE(same_in(unit_roundoff<Quad>, wide.forces, forces).passed()) << seed;
+    EXPECT_TRUE(same_in(unit_roundoff<Quad>, wide.rows, rows).passed()) << seed;
+    EXPECT_TRUE(same_in(unit_roundoff<double>, in_double.forces, forces).passed()) << seed;
+    EXPECT_TRUE(same_in(unit_roundoff<double>, in_double.rows, rows).passed()) << seed;
+    Model changed = model;
+    if (centre_at_origin(changed)) {
+      EXPECT_FALSE(same_in(unit_roundoff<Quad>, moves<Quad>(k_, s, changed, nu, g).forces, forces).passed()) << seed;
+    }
+    if (changed = model; turned_frame(changed)) {
+      EXPECT_FALSE(same_in(unit_roundoff<Quad>, moves<Quad>(k_, s, changed, nu, g).rows, rows).passed()) << seed;
+    }
+  }
 }
 
 // ---- the closed forms ------------------------------------------------------------------------------------------
