@@ -228,32 +228,51 @@ template <class T> Moves moves(const Known& k, const Sample& s, const Model& mod
   return {wide(c), wide(rows)};
 }
 
-Verdict same_in(double eps, const MatrixX<Quad>& x, const MatrixX<Quad>& y) {
-  Quad size(0);
-  for (const Quad& v : y.reshaped()) size = std::max(size, Quad(abs(v)));
-  return laws::judge(x - y, MatrixX<Quad>::Constant(x.rows(), 1, size), eps, "largest entry");
+/// Against what the terms may come to: squares of velocities, and gravity, times lengths (rows) and moments (forces) of the sample.
+double size_of_terms(const Sample& s, const Vector& nu, const Vector& g) {
+  double lengths = 1 + s.q.cwiseAbs().sum();
+  for (const double p : s.parameters) lengths += std::fabs(p);
+  return (std::pow(1 + nu.cwiseAbs().sum(), 2) + g.norm()) * lengths * lengths;
+}
+Verdict same_in(double eps, const MatrixX<Quad>& x, const MatrixX<Quad>& y, double size) {
+  return laws::judge(x - y, MatrixX<Quad>::Constant(x.rows(), 1, Quad(size)), eps, "size of the terms");
+}
+/// Rows in the axes of frame a see the lever of frame b alone.
+bool turned_far_end(Model& m) {
+  Frame& b = m.constraints.front().b;
+  if (b.body == ground || b.placement.translation.isZero(0)) return false;
+  b.placement.translation *= -1;
+  return true;
 }
 
 TEST_P(Lagrangian, BiasAgrees) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const Sample s = sample(k_, seed);
     Dice dice(100 + seed);
-    const Vector nu = dice.vector(static_cast<Index>(k_.mechanism.nu.size()), -2, 2), g = dice.vector(3, -10, 10);
+    const Vector nu = dice.vector(static_cast<Index>(k_.mechanism.nu.size()), -2, 2), g = dice.vector(3, -8, 8);  // sixteenths
+    const auto exactly = [&](Index c) { return GiNaC::ex(static_cast<int>(16 * g[c])) / 16; };
     const Numbers numbers(k_.mechanism, k_.derived, s.parameters, s.q);
-    const lagrangian::Bias exact = lagrangian::bias(k_.mechanism, lagrangian::point(g[0], g[1], g[2]));
-    const MatrixX<Quad> forces = numbers.evaluate(exact.forces, nu), rows = numbers.evaluate(exact.rows, nu);
+    const lagrangian::Bias bias = lagrangian::bias(k_.mechanism, lagrangian::point(exactly(0), exactly(1), exactly(2)));
+    const Moves exact{numbers.evaluate(bias.forces, nu), numbers.evaluate(bias.rows, nu)};
+    const double size = size_of_terms(s, nu, g);
+    const auto agrees = [&](double eps, const Moves& said) {
+      return std::pair{same_in(eps, said.forces, exact.forces, size).passed(), same_in(eps, said.rows, exact.rows, size).passed()};
+    };
     const Model model = model_of(k_, s);
-    const Moves wide = moves<Quad>(k_, s, model, nu, g), in_double = moves<double>(k_, s, model, nu, g);
-    EXPECT_TRUE(same_in(unit_roundoff<Quad>, wide.forces, forces).passed()) << seed;
-    EXPECT_TRUE(same_in(unit_roundoff<Quad>, wide.rows, rows).passed()) << seed;
-    EXPECT_TRUE(same_in(unit_roundoff<double>, in_double.forces, forces).passed()) << seed;
-    EXPECT_TRUE(same_in(unit_roundoff<double>, in_double.rows, rows).passed()) << seed;
-    Model changed = model;
-    if (centre_at_origin(changed)) {
-      EXPECT_FALSE(same_in(unit_roundoff<Quad>, moves<Quad>(k_, s, changed, nu, g).forces, forces).passed()) << seed;
-    }
-    if (changed = model; turned_frame(changed)) {
-      EXPECT_FALSE(same_in(unit_roundoff<Quad>, moves<Quad>(k_, s, changed, nu, g).rows, rows).passed()) << seed;
+    EXPECT_EQ(agrees(unit_roundoff<Quad>, moves<Quad>(k_, s, model, nu, g)), std::pair(true, true)) << seed;
+    EXPECT_EQ(agrees(unit_roundoff<double>, moves<double>(k_, s, model, nu, g)), std::pair(true, true)) << seed;
+    for (const bool wide : {true, false}) {
+      const auto spoilt = [&](const Model& m) {
+        return wide ? agrees(unit_roundoff<Quad>, moves<Quad>(k_, s, m, nu, g)) : agrees(unit_roundoff<double>, moves<double>(k_, s, m, nu, g));
+      };
+      Model changed = model;
+      if (centre_at_origin(changed)) {
+        EXPECT_FALSE(spoilt(changed).first) << seed;
+      }
+      changed = model;
+      if (turned_far_end(changed)) {
+        EXPECT_FALSE(spoilt(changed).second) << seed;
+      }
     }
   }
 }

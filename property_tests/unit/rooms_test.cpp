@@ -1,5 +1,6 @@
 // The rooms of algorithms/ stand on floors: a file includes what is below it or beside it in its own room, never above.
 //
+//   dynamics       RNEA, CRBA, ABA, constrained forward dynamics
 //   operators      the table and its rows
 //   factors | mechanism
 //   problem        the numbers between these two
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, int> floor_of{{"errors", 0}, {"kit", 1}, {"problem", 2}, {"mechanism", 3}, {"factors", 3}, {"operators", 4}, {"", 5}};
+const std::map<std::string, int> floor_of{{"errors", 0}, {"kit", 1}, {"problem", 2}, {"mechanism", 3}, {"factors", 3}, {"operators", 4}, {"dynamics", 5}, {"", 6}};
 
 TEST(Rooms, ArrowsPointDown) {
   int arrows = 0;
