@@ -12,7 +12,7 @@ template <class T> class FactorView {
  public:
   static void add_weights(Factor<T>& f, const BlockDiagonal<T>& weights) { f.add_weights(weights); }
   static bool eliminate(Factor<T>& f, int step) { return f.eliminate(step); }
-  static const SixBySix<T>& inertia(const Factor<T>& f, int step) { return f.inertia_[static_cast<std::size_t>(step)]; }
+  static SixBySix<T> inertia(const Factor<T>& f, int step) { return f.inertia(step); }
   static const T& d_inverse(const Factor<T>& f, int column) { return f.d_inverse_[static_cast<std::size_t>(column)]; }
   static void backward(const Factor<T>& f, const T* x, Six<T>* forces, T* u) {
     f.scatter(x, forces, u);

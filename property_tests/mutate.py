@@ -33,7 +33,7 @@ ROOT = os.path.dirname(HERE)
 FILES = {
     "plan.cpp": "plans lcaba aba_sweep", "plan.h": "plans lcaba aba_sweep lcaba_refined",
     "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
-    "factor.cpp": "kernels lcaba aba_sweep", "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
+    **dict.fromkeys(["factor.cpp", "factor_steps.cpp", "link_rows.cpp"], "kernels lcaba aba_sweep"), "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
     "columns.h": "Columns lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
     "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
     "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined", "lcaba_refined.cpp": "lcaba_refined",

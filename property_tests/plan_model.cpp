@@ -38,6 +38,7 @@ class Model {
       expect(firsts->size() == n + 1 && firsts->front() == 0, "first entries", 0);
     for (int i = 0; i < plan_.steps; ++i) expect(plan_.body[i] >= 0 && plan_.body[i] < plan_.steps && plan_.step[plan_.body[i]] == i, "step of body", i);
     check_constraints();
+    expect(plan_.matrix == matrix_, "matrix", 0);
     expect(plan_.first_active == plan_.steps - static_cast<int>(active_.size()), "first active step", plan_.first_active);
     for (int i = 0; i < plan_.steps; ++i) check_step(i);
     expect(plan_.blocks == static_cast<int>(block_.size()), "number of blocks", plan_.blocks);
@@ -113,6 +114,9 @@ class Model {
     for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
       const Plan::Run& run = plan_.runs[k];
       expect(run.begin == next && run.end > run.begin && run.end <= plan_.steps, "runs", run.begin);
+      bool chain = run.simple && run.dofs == 1;
+      for (int i = run.begin; i + 1 < run.end; ++i) chain = chain && plan_.parent[i] == i + 1;
+      expect(run.chain == chain, "a chain, or none", run.begin);
       for (int i = run.begin; i < run.end; ++i) {
         const bool simple = plan_.first_member[i + 1] - plan_.first_member[i] == 1 && plan_.members[plan_.first_member[i]].block < 0;
         expect(run.dofs == s_.dofs(plan_.body[i]) && run.simple == simple, "a step unlike its run", i);

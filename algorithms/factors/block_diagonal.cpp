@@ -57,6 +57,12 @@ template <class T> void BlockDiagonal<T>::add_to_diagonal(const T* shift) {
 template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& damping, const T* shift) {
   assign(damping);
   if (shift != nullptr) add_to_diagonal(shift);
+  if (!any_dense_) {
+    int usable = 1;
+    for (T& d : diagonal_) usable &= ScalarTraits<T>::usable_pivot(d);
+    for (T& d : diagonal_) d = usable ? T(1) / d : d;
+    if (usable) return {};
+  }
   for (std::size_t e = 0; e < rows_.size(); ++e) {
     const auto [row, m] = rows_[e];
     if (has_dense_[e]) {  // R_e = (R_e⁻¹)⁻¹ by LDLᵀ

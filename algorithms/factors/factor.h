@@ -16,9 +16,7 @@
 // Source   paper, Algorithms 1–4 with the corrections of docs/paper_notes.md.
 #pragma once
 
-#include "algorithms/factors/block_diagonal.h"
-#include "algorithms/factors/plan.h"
-#include "algorithms/kit/six.h"
+#include "algorithms/factors/link_rows.h"
 
 namespace delassus {
 
@@ -30,7 +28,7 @@ template <class T> class Factor {
   [[nodiscard]] Report start(const Problem<T>& problem);
   /// The rest of the factor of M_R; what start computed is kept, so that new weights cost no more than they must.
   [[nodiscard]] Report update_weights(const BlockDiagonal<T>& weights);
-  /// The rest of the factor of M.
+  /// The rest of the factor of M, once after each start.
   [[nodiscard]] Report update_undamped() { return eliminate(plan_->first_active, plan_->steps); }
 
   /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
@@ -61,23 +59,26 @@ template <class T> class Factor {
  private:
   template <class> friend class FactorView;  // reads intermediate numbers: property_tests/digits.cpp
 
-  struct Attachment {  // one body of a link constraint
-    int step;          // from first_active
-    Index row, rows, first;
-  };
   struct JointRows {
     int step, column, dofs;  // from the first active step and column
     Index row, rows, first, constraint;
   };
 
+  void find_sources();
   void add_weights(const BlockDiagonal<T>& weights);
-  void add_link_weights(const BlockDiagonal<T>& weights, Index e, const Structure::LinkConstraint& c);
   void add_joint_weights(const BlockDiagonal<T>& weights);
   Report eliminate(int begin, int end);
   bool eliminate(int i);
   bool eliminate_simple(int i);
-  bool diagonalise(int i);
-  void update_members(int i);
+  template <class N> bool eliminate_general(int i, N n);
+  template <class N> bool diagonalise(int i, N n, T (&D)[6][6]);
+  template <class N> void take_basis(int i, N n, const T (&D)[6][6]);
+  template <class N> void update_members(int i, N n, SixBySix<T>& H);
+  [[nodiscard]] SixBySix<T> inertia(int i) const;
+  /// Where start leaves H_ii.
+  [[nodiscard]] SixBySix<T>& given(int i) { return kept(i) ? own_[i - plan_->first_active] : inertia_[i]; }
+  /// Step i runs again with every damping.
+  [[nodiscard]] bool kept(int i) const { return plan_->matrix == Matrix::M_R && i >= plan_->first_active; }
 
   template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
   void add_torques(const T* tau, T* u) const;
@@ -89,25 +90,27 @@ template <class T> class Factor {
 
   const Structure* structure_ = nullptr;
   const Plan* plan_ = nullptr;
-  bool started_ = false;  // no weights since start
   // Everything below is in sweep order (steps, then their columns).
   std::vector<Six<T>> s_;            // S_i E_i, per column
   std::vector<T> d_inverse_;         // 1/D, per column
-  std::vector<Six<T>> e_;            // columns of E_i, six per joint of more than one degree of freedom
-  std::vector<int> e_of_;            // per step, −1: one degree of freedom or none
   std::vector<Six<T>> w_;            // W_j D⁻¹, per step, member, column
-  std::vector<SixBySix<T>> inertia_; // H_ii while a step runs
+  std::vector<int> vector_of_;       // per step: its six columns in s0_ and e_, −1: one degree of freedom or none
+  std::vector<Six<T>> s0_, e_;       // S_i, and the columns of E_i
+  std::vector<T> armature_, shift_;  // per column; with 𝒦ᵢᵀ R 𝒦ᵢ where the joint has one degree of freedom
+  std::vector<SixBySix<T>> own_;     // of M_R, per active step: H_ii before weights, with what phase A adds
+  std::vector<SixBySix<T>> inertia_; // of filled steps H_ii without their children's parts until the step runs; then its own part
   std::vector<SixBySix<T>> block_;   // couplings H_ij
-  std::vector<SixBySix<T>> inertia0_;  // H_ii of the active steps after phase A, before weights
-  std::vector<Six<T>> s0_;             // S_i of the active steps
-  std::vector<T> armature_;
-  std::vector<Six<T>> k_;              // rows of the K_e^i
-  std::vector<T> joint_k0_, joint_k_;  // 𝒦_i and 𝒦_i E_i
-  std::vector<Six<T>> weighted_;       // scratch: R_e K_e^j
-  std::vector<Attachment> attachments_;
+  std::vector<Six<T>> unscaled_;     // scratch: W_j of one step
+  std::vector<char> filled_;         // per step
+  std::vector<int> copied_;          // filled steps without rows
+  std::vector<int> first_child_, children_;  // per step, those it takes inertia_ from: simple, of the same phase
+  std::vector<int> early_;           // steps of phase A with an active parent
+
+  LinkRows<T> links_;                   // the K_e^i
+  std::vector<T> joint_k0_, joint_k_;   // 𝒦_i and 𝒦_i E_i
   std::vector<JointRows> joint_rows_;   // ascending by step
   std::vector<int> first_joint_rows_;   // per active step
-  std::vector<Matrix6<T>> joint_weight_;// 𝒦ᵢᵀ R 𝒦ᵢ of the steps in joint_weight_of_
+  std::vector<T> joint_weight_;         // 𝒦ᵢᵀ R 𝒦ᵢ, n_i × n_i, of joints with rows
   std::vector<int> joint_weight_of_;    // per active step, −1: none
 };
 

@@ -130,7 +130,8 @@ void append_runs(Plan& plan) {
     const int dofs = plan.first_column[i + 1] - plan.first_column[i];
     const bool simple = plan.simple(i);
     if (plan.runs.empty() || plan.runs.back().dofs != dofs || plan.runs.back().simple != simple)
-      plan.runs.push_back({i, i, dofs, simple});
+      plan.runs.push_back({i, i, dofs, simple, simple && dofs == 1});
+    else if (plan.parent[i - 1] != i) plan.runs.back().chain = false;
     plan.runs.back().end = i + 1;
   }
 }
@@ -142,6 +143,7 @@ Plan make_plan(const Structure& s, Matrix matrix, Branches branches) {
   const Cliques cliques = minimum_degree(s, matrix, tree);
   const int n = narrow(s.bodies());
   Plan plan;
+  plan.matrix = matrix;
   plan.steps = n;
   plan.body.resize(n);
   plan.step.resize(n);

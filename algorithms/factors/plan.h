@@ -17,6 +17,9 @@
 
 namespace delassus {
 
+/// Which matrix is factored: M couples a joint with its ancestors only, M_R = M + JᵀRJ also all links of a constraint.
+enum class Matrix : std::uint8_t { M, M_R };
+
 struct Plan {
   /// One of the nodes a step updates: Q_i = N_i ∪ {π(i)}, in ascending order of steps.
   struct Member {
@@ -27,8 +30,10 @@ struct Plan {
   struct Run {
     int begin, end, dofs;
     bool simple;  ///< no couplings, and a parent: the plain articulated-body step
+    bool chain;   ///< of one degree of freedom, simple, and the parent of each but the last is the next one
   };
 
+  Matrix matrix = Matrix::M;
   int steps = 0;         ///< N
   int first_active = 0;  ///< steps before it are phase A
   int blocks = 0;        ///< 6×6 off-diagonal blocks, fill included
@@ -58,8 +63,6 @@ struct Plan {
   [[nodiscard]] Index bytes() const;
 };
 
-/// Which matrix is factored: M couples a joint with its ancestors only, M_R = M + JᵀRJ also all links of a constraint.
-enum class Matrix : std::uint8_t { M, M_R };
 /// Whether vectors visit every joint, or only those with rows in their subtree.
 enum class Branches : std::uint8_t { with_rows, all };
 [[nodiscard]] Plan make_plan(const Structure& structure, Matrix matrix, Branches branches = Branches::with_rows);

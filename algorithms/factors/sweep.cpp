@@ -12,8 +12,7 @@ template <class V> Six<V>* forces(V* work) { return reinterpret_cast<Six<V>*>(wo
 template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>* f, V* u) const {
   for (int i = 0; i < plan_->active(); ++i) f[i] = Six<V>::zero();
   for (int c = 0; c < plan_->active_columns(); ++c) u[c] = V{};
-  for (const Attachment& at : attachments_)
-    for (Index r = 0; r < at.rows; ++r) add_scaled(f[at.step], k_[at.first + r], x[at.row + r]);
+  links_.scatter(x, f);
   for (const JointRows& j : joint_rows_)
     for (Index r = 0; r < j.rows; ++r)
       for (int c = 0; c < j.dofs; ++c) u[j.column + c] += x[j.row + r] * joint_k_[j.first + r * j.dofs + c];
@@ -23,6 +22,19 @@ template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>
 template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) const {
   const int a = plan_->first_active, column0 = plan_->first_column[a];
   for (const Plan::Run& run : plan_->runs) {
+    if (run.chain) {
+      Six<V> fi = f[run.begin - a];
+      for (int i = run.begin; i < run.end; ++i) {
+        const int c = plan_->first_column[i];
+        V& uc = u[c - column0];
+        uc += dot(s_[c], fi);
+        add(fi, f[plan_->parent[i] - a]);
+        subtract_scaled(fi, w_[plan_->first_w[i]], uc);
+        uc *= d_inverse_[c];
+      }
+      f[plan_->parent[run.end - 1] - a] = fi;
+      continue;
+    }
     if (run.simple && run.dofs == 1) {
       for (int i = run.begin; i < run.end; ++i) {
         const int c = plan_->first_column[i];
@@ -38,11 +50,14 @@ template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) 
     for (int i = run.begin; i < run.end; ++i) {
       const int first = plan_->first_column[i];
       V* const ui = u + first - column0;
-      for (int c = 0; c < run.dofs; ++c) ui[c] += dot(s_[first + c], f[i - a]);
+      add_dots(ui, s_.data() + first, f[i - a], run.dofs);
       if (plan_->parent[i] >= 0) add(f[plan_->parent[i] - a], f[i - a]);
       const Six<T>* w = w_.data() + plan_->first_w[i];
-      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
-        for (int c = 0; c < run.dofs; ++c) subtract_scaled(f[plan_->members[k].step - a], *w++, ui[c]);
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k) {
+        Six<V> fj = f[plan_->members[k].step - a];
+        for (int c = 0; c < run.dofs; ++c) subtract_scaled(fj, *w++, ui[c]);
+        f[plan_->members[k].step - a] = fj;
+      }
       for (int c = 0; c < run.dofs; ++c) ui[c] *= d_inverse_[first + c];
     }
   }
@@ -53,9 +68,10 @@ template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) c
   const int a = plan_->first_active, column0 = plan_->first_column[a];
   for (auto run = plan_->runs.rbegin(); run != plan_->runs.rend(); ++run) {
     if (run->simple && run->dofs == 1) {
+      Six<V> ai = f[plan_->parent[run->end - 1] - a];
       for (int i = run->end; i-- > run->begin;) {
         const int c = plan_->first_column[i];
-        Six<V> ai = f[plan_->parent[i] - a];
+        if (!run->chain) ai = f[plan_->parent[i] - a];
         V& uc = u[c - column0];
         uc -= dot(w_[plan_->first_w[i]], ai);
         add_scaled(ai, s_[c], uc);
@@ -64,13 +80,13 @@ template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) c
       continue;
     }
     for (int i = run->end; i-- > run->begin;) {
-      const int first = plan_->first_column[i];
+      const int first = plan_->first_column[i], n = run->dofs;
       V* const ui = u + first - column0;
       const Six<T>* w = w_.data() + plan_->first_w[i];
-      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k)
-        for (int c = 0; c < run->dofs; ++c) ui[c] -= dot(*w++, f[plan_->members[k].step - a]);
+      for (int k = plan_->first_member[i]; k < plan_->first_member[i + 1]; ++k, w += n)
+        subtract_dots(ui, w, f[plan_->members[k].step - a], n);
       Six<V> ai = plan_->parent[i] >= 0 ? f[plan_->parent[i] - a] : Six<V>::zero();
-      for (int c = 0; c < run->dofs; ++c) add_scaled(ai, s_[first + c], ui[c]);
+      for (int c = 0; c < n; ++c) add_scaled(ai, s_[first + c], ui[c]);
       f[i - a] = ai;
     }
   }
@@ -78,22 +94,13 @@ template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) c
 
 // Alg. 3, lines 4–8: y_e = Σ K_e^i a_i, y_i = 𝒦ᵢ ν_i.
 template <class T> template <class V> void Factor<T>::gather(const Six<V>* f, const V* u, V* y) const {
-  for (Index r = 0; r < structure_->rows; ++r) y[r] = V{};
-  for (const Attachment& at : attachments_) {
-    const Six<V> a = f[at.step];
-    Index r = 0;
-    for (; std::is_same_v<V, double> && r + 3 <= at.rows; r += 3) {  // three reductions at once
-      const Six<T>* const k = k_.data() + at.first + r;
-      const Six<V> p[4] = {product(k[0], a), product(k[1], a), product(k[2], a), Six<V>::zero()};
-      V sum[4];
-      sums(p, sum, 3);
-      for (Index s = 0; s < 3; ++s) y[at.row + r + s] += sum[s];
-    }
-    for (; r < at.rows; ++r) y[at.row + r] += dot(k_[at.first + r], a);
-  }
+  links_.gather(f, y);
   for (const JointRows& j : joint_rows_)
-    for (Index r = 0; r < j.rows; ++r)
-      for (int c = 0; c < j.dofs; ++c) y[j.row + r] += u[j.column + c] * joint_k_[j.first + r * j.dofs + c];
+    for (Index r = 0; r < j.rows; ++r) {
+      V sum{};
+      for (int c = 0; c < j.dofs; ++c) sum += u[j.column + c] * joint_k_[j.first + r * j.dofs + c];
+      y[j.row + r] = sum;
+    }
 }
 
 template <class T> template <class V> void Factor<T>::project(const V* x, V* y, V* work) const {
@@ -113,7 +120,7 @@ template <class T> void Factor<T>::add_torques(const T* tau, T* u) const {
     if (n == 1) u[first] += t[0];
     if (n <= 1) continue;
     const Six<T> of_joint = load(t, n);
-    const Six<T>* const e = e_.data() + e_of_[i];
+    const Six<T>* const e = e_.data() + vector_of_[i];
     for (int c = 0; c < n; ++c) u[first + c] += dot(e[c], of_joint);
   }
 }
@@ -125,7 +132,7 @@ template <class T> void Factor<T>::velocities(const T* u, T* nu) const {
     T* const v = nu + structure_->first_dof[plan_->body[i]];
     if (n == 1) v[0] = u[first];
     if (n <= 1) continue;
-    const Six<T>* const e = e_.data() + e_of_[i];
+    const Six<T>* const e = e_.data() + vector_of_[i];
     Six<T> of_joint = scaled(e[0], u[first]);
     for (int c = 1; c < n; ++c) add_scaled(of_joint, e[c], u[first + c]);
     for (int c = 0; c < n; ++c) v[c] = of_joint[c];
@@ -188,7 +195,6 @@ template <class T> Matrix6<T> Factor<T>::mobility(int i, SixBySix<T>* omega) con
 
 // From the roots outwards.
 template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const {
-  const auto quadratic = [](const SixBySix<T>& X, const Six<T>& x) { return dot(x, multiply(X, x)); };
   for (int i = plan_->steps; i-- > 0;) {
     const int n = plan_->first_column[i + 1] - plan_->first_column[i];
     const Matrix6<T> V = mobility(i, omega);
@@ -200,12 +206,7 @@ template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const 
           for (int e = 0; e < n; ++e) of_row += k[c] * V(c, e) * k[e];
       }
   }
-  for (const auto& e : structure_->link_constraints)
-    for (Index r = 0; r < e.rows; ++r) {
-      d[e.row + r] = T(0);
-      for (const auto& link : e.links)
-        d[e.row + r] += T(static_cast<int>(e.links.size())) * quadratic(omega[plan_->step[link.body]], k_[link.first + r]);
-    }
+  links_.mobility(omega + plan_->first_active, d);
 }
 
 // E V Eᵀ of every joint
@@ -216,7 +217,7 @@ template <class T> void Factor<T>::joint_mobility(T* d, SixBySix<T>* omega) cons
     T* const of_joint = d + structure_->first_dof[plan_->body[i]];
     if (n == 1) of_joint[0] = V(0, 0);
     if (n <= 1) continue;
-    const Six<T>* const E = e_.data() + e_of_[i];
+    const Six<T>* const E = e_.data() + vector_of_[i];
     for (int j = 0; j < n; ++j) {
       of_joint[j] = T(0);
       for (int c = 0; c < n; ++c)

@@ -106,6 +106,17 @@ struct alignas(64) Lanes8 {
 
 #endif
 
+/// The first n of x; all of them from 4 on.
+[[gnu::always_inline]] inline void store_lanes(double* to, const Lanes4& x, int n) {
+  if (n >= 4) *reinterpret_cast<UnalignedLanes4*>(to) = x;
+  else
+#ifdef __AVX512VL__
+    _mm256_mask_storeu_pd(to, static_cast<__mmask8>((1 << n) - 1), x);
+#else
+    for (int k = 0; k < n; ++k) to[k] = x[k];
+#endif
+}
+
 /// The sum of the lanes.
 [[nodiscard, gnu::always_inline]] inline double total(const Lanes8& x) {
   const Lanes4 four = lower(x) + upper(x);

@@ -117,17 +117,23 @@ template <class T, class V> [[nodiscard]] inline Six<V> product(const Six<T>& x,
   return p;
 }
 
+/// p += x ∘ y
+inline void add_product(Six<double>& p, const Six<double>& x, const Six<double>& y) { p.v += x.v * y.v; }
+
 /// What is left of x when its halves are added.
 [[nodiscard, gnu::always_inline]] inline Lanes4 folded(const Six<double>& x) { return lower(x.v) + upper(x.v); }
 template <int... lane> [[nodiscard, gnu::always_inline]] inline Lanes4 picked(const Lanes4& a, const Lanes4& b) {
   return __builtin_shufflevector(a, b, lane...);
 }
 [[nodiscard, gnu::always_inline]] inline Lanes4 added(const Lanes4& x, const Lanes4& y) { return x + y; }
-/// sum[r] = Σ_k p[r][k] for four of them at once, in the order of total().
-template <class V> [[gnu::always_inline]] inline void sums_in_lanes(const Six<V> (&p)[4], V (&sum)[4]) {
+/// Σ_k p[r][k] for four of them at once, in the order of total().
+template <class V> [[nodiscard, gnu::always_inline]] inline auto four_sums(const Six<V> (&p)[4]) {
   const auto pairs = [](const auto& a, const auto& b) { return added(picked<0, 1, 4, 5>(a, b), picked<2, 3, 6, 7>(a, b)); };
   const auto t = pairs(folded(p[0]), folded(p[1])), u = pairs(folded(p[2]), folded(p[3]));
-  const auto s = added(picked<0, 2, 4, 6>(t, u), picked<1, 3, 5, 7>(t, u));
+  return added(picked<0, 2, 4, 6>(t, u), picked<1, 3, 5, 7>(t, u));
+}
+template <class V> [[gnu::always_inline]] inline void sums_in_lanes(const Six<V> (&p)[4], V (&sum)[4]) {
+  const auto s = four_sums(p);
   for (int r = 0; r < 4; ++r) sum[r] = s[r];
 }
 /// The same for the first `count` of them; the others must be zero.
@@ -140,24 +146,67 @@ template <class V> inline void sums(const Six<V> (&p)[4], V (&sum)[4], Index cou
     }
 }
 
+/// u_c += x_cᵀ y of n columns; three sums at once in double.
+template <class T, class V> [[gnu::always_inline]] inline void add_dots(V* u, const Six<T>* x, const Six<V>& y, int n) {
+  int c = 0;
+  if constexpr (std::is_same_v<V, double>)
+    for (; c + 3 <= n; c += 3) {
+      const Six<V> p[4] = {product(x[c], y), product(x[c + 1], y), product(x[c + 2], y), Six<V>::zero()};
+      const Lanes4 sum = four_sums(p);
+      for (int r = 0; r < 3; ++r) u[c + r] += sum[r];
+    }
+  for (; c < n; ++c) u[c] += dot(x[c], y);
+}
+
+/// u_c −= x_cᵀ y of n columns.
+template <class T, class V> [[gnu::always_inline]] inline void subtract_dots(V* u, const Six<T>* x, const Six<V>& y, int n) {
+  int c = 0;
+  if constexpr (std::is_same_v<V, double>)
+    for (; c + 3 <= n; c += 3) {
+      const Six<V> p[4] = {product(x[c], y), product(x[c + 1], y), product(x[c + 2], y), Six<V>::zero()};
+      const Lanes4 sum = four_sums(p);
+      for (int r = 0; r < 3; ++r) u[c + r] -= sum[r];
+    }
+  for (; c < n; ++c) u[c] -= dot(x[c], y);
+}
+
 template <class T> struct SixBySix {
   Six<T> column[6];
   static SixBySix zero() { SixBySix m; for (auto& c : m.column) c = Six<T>::zero(); return m; }
 };
+
+/// f(0) … f(5); in double no loop, so that six columns stay in registers.
+template <class T, class F> [[gnu::always_inline]] inline void for_columns_of_six(F&& f) {
+  if constexpr (std::is_same_v<T, double>) f(0), f(1), f(2), f(3), f(4), f(5);
+  else for (int c = 0; c < 6; ++c) f(c);
+}
+/// y = x
+template <class T> [[gnu::always_inline]] inline void copy(const SixBySix<T>& x, SixBySix<T>& y) {
+  for_columns_of_six<T>([&](int c) { y.column[c] = x.column[c]; });
+}
+template <class T> [[nodiscard, gnu::always_inline]] inline SixBySix<T> copied(const SixBySix<T>& x) {
+  SixBySix<T> y;
+  copy(x, y);
+  return y;
+}
 
 template <class T> [[nodiscard]] inline SixBySix<T> load(const Matrix6<T>& x) {
   SixBySix<T> y;
   for (int c = 0; c < 6; ++c) y.column[c] = load<T>(x.data() + 6 * c);
   return y;
 }
-/// m x
+/// m x, by two chains of sums
 template <class T, class V> [[nodiscard]] inline Six<V> multiply(const SixBySix<T>& m, const Six<V>& x) {
-  Six<V> y = scaled(m.column[0], V(x[0]));
-  for (int c = 1; c < 6; ++c) add_scaled(y, m.column[c], V(x[c]));
+  Six<V> y = scaled(m.column[0], V(x[0])), z = scaled(m.column[1], V(x[1]));
+  add_scaled(y, m.column[2], V(x[2]));
+  add_scaled(z, m.column[3], V(x[3]));
+  add_scaled(y, m.column[4], V(x[4]));
+  add_scaled(z, m.column[5], V(x[5]));
+  add(y, z);
   return y;
 }
-template <class T> inline void add(SixBySix<T>& y, const SixBySix<T>& x) {
-  for (int c = 0; c < 6; ++c) add(y.column[c], x.column[c]);
+template <class T> [[gnu::always_inline]] inline void add(SixBySix<T>& y, const SixBySix<T>& x) {
+  for_columns_of_six<T>([&](int c) { add(y.column[c], x.column[c]); });
 }
 template <class T> [[nodiscard]] inline SixBySix<T> transposed(const SixBySix<T>& x) {
   SixBySix<T> y;
@@ -173,12 +222,24 @@ template <class T> [[nodiscard]] inline SixBySix<T> transposed(const SixBySix<T>
   return y;
 }
 /// m += x yᵀ
-template <class T> inline void add_outer(SixBySix<T>& m, const Six<T>& x, const Six<T>& y) {
-  for (int c = 0; c < 6; ++c) add_scaled(m.column[c], x, T(y[c]));
+template <class T> [[gnu::always_inline]] inline void add_outer(SixBySix<T>& m, const Six<T>& x, const Six<T>& y) {
+  for_columns_of_six<T>([&](int c) { add_scaled(m.column[c], x, T(y[c])); });
+}
+/// m += Σ_r x_r y_rᵀ, r < n
+template <class T> inline void add_products(SixBySix<T>& m, const Six<T>* x, const Six<T>* y, Index n) {
+  SixBySix<T> sum = copied(m);
+  for (Index r = 0; r < n; ++r) add_outer(sum, x[r], y[r]);
+  copy(sum, m);
 }
 /// m −= x yᵀ
-template <class T> inline void subtract_outer(SixBySix<T>& m, const Six<T>& x, const Six<T>& y) {
-  for (int c = 0; c < 6; ++c) subtract_scaled(m.column[c], x, T(y[c]));
+template <class T> [[gnu::always_inline]] inline void subtract_outer(SixBySix<T>& m, const Six<T>& x, const Six<T>& y) {
+  for_columns_of_six<T>([&](int c) { subtract_scaled(m.column[c], x, T(y[c])); });
+}
+/// m −= Σ_r x_r y_rᵀ, r < n
+template <class T, class N> inline void subtract_products(SixBySix<T>& m, const Six<T>* x, const Six<T>* y, N n) {
+  SixBySix<T> sum = copied(m);
+  for (int r = 0; r < n; ++r) subtract_outer(sum, x[r], y[r]);
+  copy(sum, m);
 }
 
 }  // namespace delassus

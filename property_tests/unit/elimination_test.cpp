@@ -34,7 +34,9 @@ TEST(Elimination, TheModelNoticesWrongPlans) {
   EXPECT_NE(broken([](Plan& p) { std::swap(p.pairs[0], p.pairs[1]); }), "");
   EXPECT_NE(broken([](Plan& p) { p.blocks += 1; }), "");
   EXPECT_NE(broken([](Plan& p) { p.first_active = 1; }), "");
+  EXPECT_NE(broken([](Plan& p) { p.matrix = Matrix::M; }), "");
   EXPECT_NE(broken([](Plan& p) { p.runs.front().end -= 1; }), "");
+  EXPECT_NE(broken([](Plan& p) { p.runs.front().chain = !p.runs.front().chain; }), "");
 }
 
 }  // namespace

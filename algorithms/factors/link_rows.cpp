@@ -1,0 +1,192 @@
+#include "algorithms/factors/link_rows.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "algorithms/kit/instantiate.h"
+
+namespace delassus {
+namespace {
+
+// The links of a constraint by steps: (step, place in the constraint).
+using Links = std::vector<std::pair<int, int>>;
+Links by_steps(const Structure::LinkConstraint& e, const Plan& plan) {
+  Links links;
+  for (const auto& link : e.links) links.emplace_back(plan.step[link.body], static_cast<int>(links.size()));
+  std::sort(links.begin(), links.end());
+  return links;
+}
+
+bool same_steps(const Links& a, const Links& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first == y.first; });
+}
+
+bool earlier_steps(const Links& a, const Links& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+}
+
+// Where the pair of places a, b stands among (0,1) (0,2) … (1,2) … of n.
+int place_of_pair(int a, int b, int n) {
+  if (a > b) std::swap(a, b);
+  return a * (2 * n - a - 1) / 2 + b - a - 1;
+}
+
+}  // namespace
+
+template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& plan) {
+  groups_.clear(), steps_.clear(), again_.clear(), pairs_.clear(), constraints_.clear(), segments_.clear(), spans_.clear(), sources_.clear();
+  const std::size_t count = s.link_constraints.size();
+  std::vector<Links> links;
+  links.reserve(count);
+  for (const auto& e : s.link_constraints) links.push_back(by_steps(e, plan));
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return earlier_steps(links[a], links[b]); });
+
+  const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
+  std::vector<char> seen(static_cast<std::size_t>(plan.active()), 0);
+  int first = 0, largest = 0;
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    const Links& bodies = links[order[begin]];
+    Group group{size(steps_), size(pairs_), size(constraints_), 0, first};
+    const int n = size(bodies), first_span = size(spans_);
+    for (end = begin; end < count && same_steps(links[order[end]], bodies); ++end) {
+      const auto& e = s.link_constraints[order[end]];
+      const int row = static_cast<int>(e.row), rows = static_cast<int>(e.rows);
+      if (end > begin && spans_.back().row + spans_.back().rows == row) spans_.back().rows += rows;
+      else spans_.push_back({group.first_body, n, row, rows, first + group.rows, 0});
+      constraints_.push_back({order[end], row, rows});
+      group.rows += rows;
+    }
+    for (int b = 0; b < n; ++b) {
+      steps_.push_back(bodies[b].first - plan.first_active);
+      again_.push_back(std::exchange(seen[steps_.back()], 1));
+      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({steps_.back(), spans_[span].row, spans_[span].rows});
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto& e = s.link_constraints[order[k]];
+        const Index from = e.links[links[order[k]][b].second].first;
+        if (!sources_.empty() && sources_.back().from + sources_.back().rows == from) sources_.back().rows += e.rows;
+        else sources_.push_back({from, first, e.rows});
+        first += static_cast<int>(e.rows);
+      }
+    }
+    for (int span = first_span; span < size(spans_); ++span) spans_[span].stride = group.rows;
+    if (const int e = order[begin]; plan.first_constraint_pair[e + 1] > plan.first_constraint_pair[e])
+      for (int a = 0; a < n; ++a)
+        for (int b = a + 1; b < n; ++b)
+          pairs_.push_back(plan.constraint_pairs[plan.first_constraint_pair[e] + place_of_pair(bodies[a].second, bodies[b].second, n)]);
+    groups_.push_back(group);
+    largest = std::max(largest, first - group.first);
+  }
+  groups_.push_back({size(steps_), size(pairs_), size(constraints_), 0, first});
+  k_.assign(static_cast<std::size_t>(first + 3), Six<T>::zero());  // gather reads four at a time
+  weighted_.assign(static_cast<std::size_t>(largest), Six<T>::zero());
+}
+
+template <class T> void LinkRows<T>::load(const Problem<T>& problem) {
+  for (const Source& s : sources_)
+    for (Index r = 0; r < s.rows; ++r) k_[s.to + r] = delassus::load(problem.K[s.from + r]);
+}
+
+// H_ii += K_iᵀ R K_i of body b of a group; R K_i is kept
+template <class T>
+void LinkRows<T>::add_inertia(const Group& g, int b, const BlockDiagonal<T>& weights, const SixBySix<T>& from, SixBySix<T>& to) {
+  const Six<T>* k = k_.data() + g.first + b * g.rows;
+  Six<T>* weighted = weighted_.data() + b * g.rows;
+  SixBySix<T> sum = copied(from);
+  for (int e = g.first_constraint; e < (&g + 1)->first_constraint; ++e) {
+    const auto [constraint, row, m] = constraints_[e];
+    const T* const R = weights.dense(constraint);
+    for (int r = 0; r < m; ++r, ++weighted) {
+      if (R == nullptr) *weighted = scaled(k[r], weights.diagonal(row + r));
+      else {
+        *weighted = Six<T>::zero();
+        for (int q = 0; q < m; ++q) add_scaled(*weighted, k[q], R[q * m + r]);
+      }
+      add_outer(sum, *weighted, k[r]);
+    }
+    k += m;
+  }
+  copy(sum, to);
+}
+
+// Alg. 4, lines 2–11: H_ii += K_iᵀ R K_i; H_ij += K_jᵀ R K_i, i the earlier one
+template <class T>
+void LinkRows<T>::add_weights(const BlockDiagonal<T>& weights, const SixBySix<T>* own, SixBySix<T>* inertia, SixBySix<T>* block) {
+  const int* pair = pairs_.data();
+  for (auto g = groups_.begin(); g + 1 < groups_.end(); ++g) {
+    const int bodies = g[1].first_body - g->first_body;
+    for (int b = 0; b < bodies; ++b) {
+      const int i = steps_[g->first_body + b];
+      add_inertia(*g, b, weights, again_[g->first_body + b] ? inertia[i] : own[i], inertia[i]);
+    }
+    for (int a = 0; a < bodies; ++a)
+      for (int b = a + 1; b < bodies; ++b)
+        add_products(block[*pair++], weighted_.data() + b * g->rows, k_.data() + g->first + a * g->rows, g->rows);
+  }
+}
+
+// f_i += Σ K_e^iᵀ x_e
+template <class T> template <class V> void LinkRows<T>::scatter(const V* x, Six<V>* f) const {
+  const Six<T>* k = k_.data();
+  for (const Segment& s : segments_) {
+    Six<V> sum = f[s.step];
+    for (int r = 0; r < s.rows; ++r) add_scaled(sum, *k++, x[s.row + r]);
+    f[s.step] = sum;
+  }
+}
+
+// y_e = Σ K_e^i a_i
+template <class T> template <class V> void LinkRows<T>::gather(const Six<V>* a, V* y) const {
+  for (const Span& s : spans_) {
+    const Six<T>* k = k_.data() + s.first;
+    const int* const steps = steps_.data() + s.first_body;
+    if (s.bodies == 0) std::fill_n(y + s.row, s.rows, V{});
+    else if constexpr (std::is_same_v<V, double>) {
+      for (int r = 0; r < s.rows; r += 4, k += 4) {  // four sums at once
+        Six<V> p[4];
+        for (int q = 0; q < 4; ++q) p[q] = product(k[q], a[steps[0]]);
+        for (int b = 1; b < s.bodies; ++b)
+          for (int q = 0; q < 4; ++q) add_product(p[q], k[b * s.stride + q], a[steps[b]]);
+        store_lanes(y + s.row + r, four_sums(p), s.rows - r);
+      }
+    } else {
+      for (int r = 0; r < s.rows; ++r, ++k) {
+        y[s.row + r] = dot(*k, a[steps[0]]);
+        for (int b = 1; b < s.bodies; ++b) y[s.row + r] += dot(k[b * s.stride], a[steps[b]]);
+      }
+    }
+  }
+}
+
+template <class T> void LinkRows<T>::mobility(const SixBySix<T>* omega, T* d) const {
+  for (const Span& s : spans_)
+    for (int r = 0; r < s.rows; ++r) {
+      d[s.row + r] = T(0);
+      for (int b = 0; b < s.bodies; ++b) {
+        const Six<T>& k = k_[s.first + b * s.stride + r];
+        d[s.row + r] += T(s.bodies) * dot(k, multiply(omega[steps_[s.first_body + b]], k));
+      }
+    }
+}
+
+template <class T> Index LinkRows<T>::bytes() const {
+  return static_cast<Index>((k_.size() + weighted_.size()) * sizeof(Six<T>) + (steps_.size() + pairs_.size()) * sizeof(int) + again_.size() +
+                            groups_.size() * sizeof(Group) + constraints_.size() * sizeof(OfConstraint) +
+                            segments_.size() * sizeof(Segment) + spans_.size() * sizeof(Span) + sources_.size() * sizeof(Source));
+}
+
+#define DELASSUS_INSTANTIATE(T) template class LinkRows<T>; template void LinkRows<T>::scatter<T>(const T*, Six<T>*) const; \
+  template void LinkRows<T>::gather<T>(const Six<T>*, T*) const;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+#ifdef DELASSUS_EXACT
+DELASSUS_INSTANTIATE(Stochastic)
+#else
+template void LinkRows<double>::scatter<Lanes8>(const Lanes8*, Six<Lanes8>*) const;
+template void LinkRows<double>::gather<Lanes8>(const Six<Lanes8>*, Lanes8*) const;
+template void LinkRows<float>::scatter<Lanes8f>(const Lanes8f*, Six<Lanes8f>*) const;
+template void LinkRows<float>::gather<Lanes8f>(const Six<Lanes8f>*, Lanes8f*) const;
+#endif
+
+}  // namespace delassus
