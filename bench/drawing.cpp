@@ -118,9 +118,20 @@ class Picture {
                                     : pose_[static_cast<std::size_t>(f.body)] * f.placement.translation);
   }
 
+  /// A link from its joint to the point that is held: what has no shape, or none there, reaches that far.
+  void add_reach(const Frame& f) {
+    if (f.body == ground) return;
+    const auto i = static_cast<std::size_t>(f.body);
+    const Body& body = scene_.model.bodies[i];
+    if (!body.shapes.empty() && body.joint.type == JointType::floating) return;
+    lines_.push_back({camera_(pose_[i].translation), end_point(f), "link" + (annotation_.bodies.empty() ? "" : " " + annotation_.bodies[i].style)});
+  }
+
   void add_constraint(const Constraint& c) {
     using Kind = Constraint::Kind;
     if (c.kind == Kind::coupling || c.kind == Kind::general) return;
+    if (!acts_on_joint(c.kind))
+      for (const Frame* f : {&c.a, &c.b}) add_reach(*f);
     if (acts_on_joint(c.kind)) {
       const Point at = camera_(pose_[static_cast<std::size_t>(c.a.body)].translation);
       marks_.push_back({at, ring_mark, "friction"});

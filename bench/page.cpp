@@ -112,7 +112,7 @@ std::string left_out_list(const Results& r) {
     const std::string name = "<b>" + escape(scene.name) + "</b>: ";
     if (n > 0) s += "<li>" + name + std::to_string(n) + " laws left out: <code>delassus check " + escape(scene.name + ops) + "</code></li>";
     if (!blind.empty())
-      s += "<li>" + name + "held by laws of identical bits alone, too large for the bounds of the others: " + escape(blind) +
+      s += "<li>" + name + "held by laws of identical bits alone, too large for the bounds of the others or without an answer: " + escape(blind) +
            "; <code>delassus accuracy " + escape(scene.name) + "</code> measures them against 113 bits</li>";
   }
   if (r.interrupted) s = "<li><b>interrupted</b>: what is missing was not measured</li>" + s;
@@ -131,15 +131,16 @@ std::string summary_section(const Results& r) {
        r.machine.processor + " · " + r.machine.compiler) + (r.quick ? " · <b>quick run</b>" : "") + "</p></header>";
   s += "<div class=\"facts\">";
   const int left = r.left_out();
+  const std::string beside = left_out_list(r);
   const std::string rest = left == 0 ? "" : "; " + std::to_string(left) + " more were left out, listed below with the commands that check them";
-  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : r.checked() == 0 ? "–" : left || r.interrupted ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
+  s += fact(failed ? "<span class=\"bad\">✗ " + std::to_string(failed) + "</span>" : r.checked() == 0 ? "–" : left || r.interrupted || !beside.empty() ? "<span class=\"good\">✓ hold</span>" : "<span class=\"good\">✓ all hold</span>",
             failed ? "of " + std::to_string(r.checked()) + " law checks failed"
                    : std::to_string(r.checked()) + " law checks: " + std::to_string(r.operators.size()) +
                          " operators on " + std::to_string(r.scenes.size()) + " scenes" + escape(rest));
   s += fact(ratio < 0 ? "–" : escape(ratio_text(ratio)), where);
   s += against_dense(r, "aba_sweep", apply_cost, "time of one application");
   s += against_dense(r, accuracy::default_rung, first_solve_cost, "time of a new configuration and one solve");
-  s += "</div>" + left_out_list(r) + "<nav><a href=\"#overview\">Overview</a> <a href=\"#accuracy\">Accuracy</a> <a href=\"#size\">Cost against size</a> <a href=\"#scenes\">Scenes</a> "
+  s += "</div>" + beside + "<nav><a href=\"#choosing\">Which operator</a> <a href=\"#overview\">Overview</a> <a href=\"#accuracy\">Accuracy</a> " + std::string(r.ladder.empty() ? "" : "<a href=\"#size\">Cost against size</a> ") + "<a href=\"#scenes\">Scenes</a> "
        "<a href=\"#laws\">Laws</a> <a href=\"#operators\">Operators</a> <a href=\"#machine\">Reproduce</a></nav>";
   return s;
 }
@@ -156,7 +157,7 @@ std::string page(const Results& r) {
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>delassus: report</title>"
          "<link rel=\"icon\" href=\"data:,\"><style>" + std::string(page_style()) + "</style></head>\n<body>\n" +
-         summary_section(r) + "\n<main>\n" + (r.chosen ? scenes_section(r) + "\n" : "") + overview_section(r) + "\n" + accuracy_section(r) + "\n" +
+         summary_section(r) + "\n<main>\n" + (r.chosen ? scenes_section(r) + "\n" : "") + choosing_section(r) + "\n" + overview_section(r) + "\n" + accuracy_section(r) + "\n" +
          ladder_section(r) + "\n" + (r.chosen ? "" : scenes_section(r) + "\n") + laws_section(r) + "\n" + operators_section(r) + "\n" + machine_section(r) + "\n</main></body></html>\n";
 }
 

@@ -13,6 +13,7 @@ namespace delassus::bench {
 
 // Its sections, in order.
 [[nodiscard]] std::string summary_section(const Results& results);
+[[nodiscard]] std::string choosing_section(const Results& results);
 [[nodiscard]] std::string overview_section(const Results& results);
 [[nodiscard]] std::string accuracy_section(const Results& results);
 [[nodiscard]] std::string ladder_section(const Results& results);

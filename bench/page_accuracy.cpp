@@ -14,8 +14,9 @@ std::string accuracy_section(const Results& r) {
     "answer.</p>";
   s += a.overview.empty() ? "<p class=\"soft\">gnuplot was not found, so the picture is left out.</p>"
                           : "<figure style=\"max-width:620px\">" + a.overview + "</figure>";
-  s += "<p class=\"small\">Digits kept on hard cases, motion/λ; * not converged, and it says so; a word: why there is no answer.</p>" +
-       accuracy::html(a.digits, "Digits kept");
+  if (a.digits.size() > 1)
+    s += "<details><summary>Digits kept on " + std::to_string(a.digits.size() - 1) + " families, motion/λ</summary><p class=\"small\">* not converged, and it says so; a word: why there "
+         "is no answer.</p>" + accuracy::html(a.digits, "Digits kept") + "</details>";
   if (!a.left_out.empty()) {
     s += "<details class=\"small\"><summary>Left out</summary><ul>";
     for (const std::string& line : a.left_out) s += "<li>" + escape(line) + "</li>";

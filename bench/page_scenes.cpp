@@ -85,7 +85,7 @@ std::string time_bars(const SceneResult& s) {
       continue;
     }
     out += "<span>" + escape(b.op) + "</span><div>";
-    for (std::size_t k = 0; k < 4; ++k) out += "<i class=\"k" + std::to_string(k) + "\" style=\"width:" + format("%.1f", 78 * b.parts[k] / longest) + "%\"></i>";
+    for (std::size_t k = 0; k < 4; ++k) out += "<i class=\"k" + std::to_string(k) + "\" style=\"width:" + format("%.1f", 68 * b.parts[k] / longest) + "%\"></i>";
     out += three_digits(b.total) + " µs</div>";
   }
   return "<div class=\"bars-key\">from q to one answer:<i class=\"k0\"></i>kinematics and rows<i class=\"k1\"></i>update<i class=\"k2\"></i>solve<i class=\"k3\"></i>"

@@ -33,7 +33,7 @@ th{font-weight:600;vertical-align:bottom}
 th small,td small{font-weight:400;color:var(--soft)}
 thead th{border-bottom:2px solid var(--line)}
 th:first-child,td:first-child{text-align:left}
-td.text,th.text{text-align:left;white-space:normal;min-width:13rem;vertical-align:top}
+td.text,th.text{text-align:left;white-space:normal;min-width:7.5rem;vertical-align:top}
 th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}
 .tables table{font-size:.8rem}.tables th,.tables td{padding:.18rem .34rem}
 .bars{display:grid;grid-template-columns:max-content minmax(0,1fr);gap:.1rem .6rem;font-size:.8rem;align-items:center;margin:.3rem 0;max-width:640px}
@@ -41,7 +41,7 @@ th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}
 .bars i{display:block;height:.7rem;flex:none}
 .k0{background:#8c959f}.k1{background:#0072b2}.k2{background:#e69f00}.k3{background:#cc79a7}
 .bars-key{font-size:.8rem;color:var(--soft)}.bars-key i{display:inline-block;width:.8rem;height:.7rem;margin:0 .25rem 0 .7rem}
-.matrix th{white-space:normal}
+.matrix th{white-space:normal;min-width:3.4rem}
 .matrix th:first-child{white-space:nowrap}
 caption{text-align:left;font-weight:600;padding:.2rem .55rem .3rem 0;font-size:.92rem}
 .good{color:var(--good)}

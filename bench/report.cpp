@@ -65,7 +65,7 @@ std::string verdict_line(const SceneResult& s) {
 void check_scenes(const std::vector<Scene>& scenes, const Ops& ops, const ReportOptions& options, Results& r, const Progress& progress) {
   int n = 0;
   const double seconds = options.quick ? quick_limit : check_limit;
-  verify(scenes, ops, {seconds, options.stop}, r.scenes, [&](const SceneResult& s) {
+  verify(scenes, ops, {seconds, options.stop, !options.quick}, r.scenes, [&](const SceneResult& s) {
     progress(format("check %2d/%zu  %s  ", ++n, scenes.size(), pad_right(s.name, 26).c_str()) + verdict_line(s));
   });
 }

@@ -24,9 +24,12 @@ LawResult outcome(const laws::LawRow& law, const OperatorRow& op, const laws::Ca
   return r;
 }
 
+/// In double.
+bool is_definition(const laws::LawRow& law) { return law.name.find("= definition") != std::string_view::npos && law.name.rfind("exact", 0) != 0; }
+
 /// Laws against a definition, and every law of the default.
 bool comes_first(const laws::LawRow& law, const OperatorRow& op) {
-  return op.name == accuracy::default_rung || (law.name.find("= definition") != std::string_view::npos && law.name.rfind("exact", 0) != 0);
+  return op.name == accuracy::default_rung || is_definition(law);
 }
 
 /// Pairs of operator and law by what matters first: every operator against the definitions, the default against all laws, then law
@@ -37,7 +40,7 @@ std::vector<Pair> by_importance(const std::vector<const OperatorRow*>& ops) {
     for (std::size_t i = 0; i < ops.size(); ++i) pairs.push_back({i, l});
   const auto rank = [&](const Pair& p) {
     const laws::LawRow& law = laws::laws()[p.law];
-    return !comes_first(law, *ops[p.op]) ? 2 : law.name.find("= definition") == std::string_view::npos ? 1 : 0;
+    return !comes_first(law, *ops[p.op]) ? 2 : is_definition(law) ? 0 : 1;
   };
   std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& x, const Pair& y) { return rank(x) < rank(y); });
   return pairs;
@@ -53,7 +56,8 @@ void verify_one(const Scene& scene, const std::vector<const OperatorRow*>& ops, 
     LawResult& r = result.cells[p.op].laws[p.law];
     const bool stopped = deadline.stop && deadline.stop();
     const bool due = deadline.seconds > 0 ? seconds_since(start) < deadline.seconds : false;
-    if (!stopped && (due || comes_first(law, *ops[p.op]))) {
+    const bool first = comes_first(law, *ops[p.op]) && (deadline.default_in_full || ops[p.op]->name != accuracy::default_rung || is_definition(law));
+    if (!stopped && (due || first)) {
       r = outcome(law, *ops[p.op], c);
       continue;
     }

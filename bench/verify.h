@@ -15,11 +15,12 @@ namespace delassus::bench {
 struct Deadline {
   double seconds = 60;
   std::function<bool()> stop = {};
+  bool default_in_full = true;   ///< every law of the default comes first too
 };
 
 /// Holds every law for each of the operators on each scene and stores the outcomes in the cells of `results` (same order as
-/// `scenes`, one cell per operator). First, and whatever it takes: every operator against the definitions, and the default against
-/// every law; then law by law. What the deadline leaves out says so. Scenes run side by side on all cores, those with most
+/// `scenes`, one cell per operator). First, and whatever it takes: every operator against the definitions, and the default
+/// against every law; then law by law. What the deadline leaves out says so. Scenes run side by side on all cores, those with most
 /// rows first. `done` is called once per scene, one call at a time.
 void verify(const std::vector<Scene>& scenes, const std::vector<const OperatorRow*>& ops, const Deadline& deadline, std::vector<SceneResult>& results,
             const std::function<void(const SceneResult&)>& done);

@@ -43,9 +43,9 @@ void add_report(options::Command& app, Run& run) {
   c->add_option("--scene", options->scenes, "only these scenes, without swimmers of growing length and families (repeat, or several names)");
   c->add_option("--op", o->ops, "only these operators, without swimmers of growing length (repeat, or several names)");
   c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`), likewise");
-  c->add_flag("--quick", options->quick, "shorter timings, swimmers to 1000 links, 5 s per scene instead of 60 for laws that do not come first");
+  c->add_flag("--quick", options->quick, "shorter timings, swimmers to 1000 links, 5 s per scene instead of 60 for laws but those against the definitions");
   c->add_flag("!--no-check", options->check, "time only");
-  c->add_flag("!--no-ladder", options->ladder, "leave out the swimmers of growing length");
+  c->add_flag("!--no-swimmers,!--no-ladder", options->ladder, "leave out the swimmers of growing length");
   add_scene_options(*c, options->opening);
   c->footer("First every operator is held against the definitions and the default against every law, then law by law; what time leaves out is "
             "said. Ctrl-C writes the page of what was done. Exit code 1 when a law is broken.");

@@ -1,4 +1,4 @@
-// The ladder of problems (ladder_problems.h): 25 mechanisms at nine dampings, every rung, a = J ν.
+// The graded problems (ladder_problems.h): 25 mechanisms at nine dampings, every rung, a = J ν.
 //
 //   accuracy_ladder [--judge NAME] [--family NAME] [--markdown]
 //
@@ -87,7 +87,7 @@ int run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  options::Command app{"The ladder of problems: R λmax from 1e-8 to 1e14, every rung (docs/accuracy_ladder.md).\n"
+  options::Command app{"The graded problems: R λmax from 1e-8 to 1e14, every rung (docs/accuracy_ladder.md).\n"
                "Exit code 1 when a promise is broken."};
   Options o;
   app.add_option("--judge", o.judge, "hold this operator to the promises of the default rung");

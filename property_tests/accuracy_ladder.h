@@ -1,4 +1,4 @@
-// What every rung makes of the ladder of problems, and the tables of it (docs/accuracy_ladder.md).
+// What every rung makes of the graded problems, and the tables of it (docs/accuracy_ladder.md).
 #pragma once
 
 #include "property_tests/ladder_problems.h"

@@ -1,4 +1,4 @@
-// The ladder of problems: mechanisms from easy to hopeless, each at constraints from soft to nearly rigid.
+// The graded problems: mechanisms from easy to hopeless, each at constraints from soft to nearly rigid.
 //
 //   for (const Mechanism& m : mechanisms())
 //     for (const Level& l : levels) …

@@ -8,6 +8,8 @@
 #include "bench/accuracy_digest.h"
 #include "bench/accuracy_truth.h"
 #include "bench/cell.h"
+#include "bench/choosing.h"
+#include "bench/drawing.h"
 #include "bench/growth.h"
 #include "bench/page.h"
 #include "bench/report.h"
@@ -198,15 +200,19 @@ TEST(Results, WhatWasLeftOutIsSaidWithItsCommand) {
   Results r = some_results();
   for (SceneResult& s : r.scenes)
     for (Cell& c : s.cells) std::erase_if(c.laws, [](const LawResult& l) { return !l.passed; });
+  EXPECT_EQ(page(r).find("all hold"), std::string::npos) << "nothing was held against a definition";
+  Results judged = r;
+  for (SceneResult& s : judged.scenes)
+    for (Cell& c : s.cells) c.laws.push_back({"x = definition", 3, true, "", "", false});
+  EXPECT_NE(page(judged).find("all hold"), std::string::npos);
   r.scenes[0].cells[1].laws.push_back({"x = definition", 3, true, "", "", false});
-  EXPECT_NE(page(r).find("all hold"), std::string::npos);
   r.scenes[0].cells[1].laws.push_back({"c", 0, true, "no time left", "", true});
   EXPECT_EQ(r.left_out(), 1);
   EXPECT_EQ(r.checked(), 4);
   const std::string html = page(r);
   EXPECT_EQ(html.find("all hold"), std::string::npos);
   EXPECT_NE(html.find("1 laws left out: <code>delassus check scene_a --op second</code>"), std::string::npos);
-  EXPECT_NE(html.find("<b>scene_a</b>: held by laws of identical bits alone, too large for the bounds of the others: first;"), std::string::npos);
+  EXPECT_NE(html.find("<b>scene_a</b>: held by laws of identical bits alone, too large for the bounds of the others or without an answer: first;"), std::string::npos);
   EXPECT_NE(text_table(r).find("1 left out"), std::string::npos);
   r.scenes[0].cells[1].laws.pop_back();
   r.interrupted = true;
@@ -227,6 +233,7 @@ TEST(Verify, TheDefaultAndTheDefinitionsComeFirst) {
   EXPECT_EQ(late[1].checked(), all[1].checked());
   EXPECT_EQ(late[0].left_out(), all[0].checked() - late[0].checked()) << "what applies and what does not are told apart";
   for (const LawResult& l : late[0].laws) EXPECT_EQ(l.skipped.empty(), l.law.find("= definition") != std::string::npos && l.law.rfind("exact", 0) != 0) << l.law;
+  EXPECT_EQ(held({0, {}, false})[1].checked(), 1) << "in a quick run the definition alone";
   EXPECT_EQ(none[1].left_out(), all[1].checked());
   EXPECT_EQ(none[1].checked(), 0);
 }
@@ -248,6 +255,59 @@ TEST(Cell, ATimeWithoutAnAnswerIsNone) {
   r.scenes[0].cells.push_back(c);
   EXPECT_EQ(overview_section(r).find("class=\"fast\""), std::string::npos) << "no answer is not the fastest";
   EXPECT_NE(overview_section(r).find("lost_<wbr>pivot"), std::string::npos);
+}
+
+TEST(Choosing, TheCheapestWithAnAnswerIsNamed) {
+  SceneResult s = scene("s");
+  s.rows = 6;
+  std::vector<OperatorInfo> operators(4);
+  const auto cell = [&](std::size_t i, const char* name, double update, double damping, double solve, const char* status, const char* error) {
+    operators[i].name = name;
+    operators[i].solve_error = error;
+    Cell c;
+    c.op = name;
+    c.update_status = "ok";
+    c.solve_status = status;
+    c.time.update = {update, update, 1};
+    c.time.new_damping = {damping, damping, 1};
+    c.time.solve = {solve, solve, 1};
+    s.cells.push_back(c);
+  };
+  cell(0, "dense", 10, 9, 1, "ok", "normwise");
+  cell(1, "sweeps", 3, 2, 2, "ok", "amplified");
+  cell(2, "ladder", 4, 3, 4, "ok", "refined");
+  cell(3, "broken", 0.1, 0.1, 0.1, "not_converged", "refined");
+  const auto& use = use_cases();
+  const auto chosen = [&](std::size_t k) { return choose(s, use[k], operators); };
+  EXPECT_EQ(chosen(0).best, "sweeps");
+  EXPECT_EQ(chosen(0).second, "ladder");
+  EXPECT_DOUBLE_EQ(chosen(0).lead, 8.0 / 5);
+  EXPECT_EQ(chosen(1).best, "dense");
+  EXPECT_DOUBLE_EQ(chosen(1).by_default, 404.0 / 110);
+  EXPECT_EQ(chosen(2).best, "sweeps");
+  EXPECT_EQ(chosen(3).best, "ladder") << "what did not converge has no error bound";
+  EXPECT_EQ(chosen(3).second, "");
+  EXPECT_EQ(chosen(6).best, "");
+}
+
+TEST(Picture, ALinkWithoutShapesReachesWhereItIsHeld) {
+  Scene s;
+  Body body;
+  body.name = "bar";
+  body.mass = 1;
+  s.model.add(body);
+  s.q = neutral(s.model);
+  const auto links = [&] {
+    const std::string svg = draw(s);
+    int n = 0;
+    for (std::size_t at = 0; (at = svg.find("class=\"link\"", at)) != std::string::npos; ++at) ++n;
+    return n;
+  };
+  EXPECT_EQ(links(), 0);
+  Constraint& held = s.model.constraints.emplace_back();
+  held.a = {0, {}};
+  held.a.placement.translation = {1, 0, 0};
+  EXPECT_EQ(links(), 1);
 }
 
 TEST(Results, LawsThatHoldAreNotFailed) {
