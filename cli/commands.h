@@ -19,6 +19,7 @@ void add_list(options::Command& app, Run& run);
 void add_describe(options::Command& app, Run& run);
 void add_check(options::Command& app, Run& run);
 void add_apply(options::Command& app, Run& run);
+void add_dynamics(options::Command& app, Run& run);
 void add_export(options::Command& app, Run& run);
 void add_accuracy(options::Command& app, Run& run);
 void add_bench(options::Command& app, Run& run);
