@@ -22,16 +22,15 @@ struct Timing {
 }
 
 /// Calls `f` once to warm up, then in up to 15 batches of equal length within about `budget` seconds. A call that is
-/// longer than the budget is timed once, cold.
+/// longer than the budget, twice so that a machine that was busy once is not taken for it, counts as it is.
 template <class F> [[nodiscard]] Timing stopwatch(F&& f, double budget) {
   const auto timed = [&](std::int64_t calls) {
     const auto start = std::chrono::steady_clock::now();
     for (std::int64_t i = 0; i < calls; ++i) f();
     return seconds_since(start) / static_cast<double>(calls);
   };
-  double once = timed(1);
-  if (once > budget) return {1e6 * once, 1e6 * once, 1};
-  once = std::min(once, timed(1));
+  const double cold = timed(1), warm = timed(1), once = std::min(cold, warm);
+  if (once > budget) return {5e5 * (cold + warm), 1e6 * once, 2};
   const auto calls = std::max<std::int64_t>(1, std::llround(budget / 15 / std::max(once, 1e-9)));
   const double batch = static_cast<double>(calls) * once;
   const int batches = std::clamp(static_cast<int>(budget / batch), 3, 15);

@@ -103,6 +103,18 @@ TEST(Cell, TimesEachPhaseApart) {
   EXPECT_EQ(slow.operations.update, -1) << "too slow to be counted";
 }
 
+TEST(Stopwatch, OneLongCallIsNotTheTime) {
+  int calls = 0;
+  const auto busy_once = [&] {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(++calls == 1 ? 20000 : 10);
+    while (std::chrono::steady_clock::now() < end) {}
+  };
+  const Timing t = stopwatch(busy_once, 0.005);
+  EXPECT_GE(t.lowest, 10);
+  EXPECT_LT(t.lowest, 10000);
+  EXPECT_GE(t.batches, 3);
+}
+
 TEST(Cell, SaysWhereThereIsNoAnswer) {
   const auto built = one_body();
   const Cell cell = measure(row_of<WithoutAnswer>(false, true), built.problem, built.damping, {0.001, 0.1});
