@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "property_tests/allocations.h"
 #include "property_tests/unit/motion_cases.h"
 #include "property_tests/verdict.h"
 #include "reference/definition.h"
+
+namespace delassus::laws {
+std::int64_t (*allocation_count)() = nullptr;  // set by count_allocations
+}
 
 namespace delassus {
 namespace {
@@ -223,6 +228,26 @@ TEST(dynamics, hard_rows_accelerate_as_wanted) {
   const double rate = 1 + k.nu.cwiseAbs().sum() + rounded(a).cwiseAbs().sum();
   for (Index r = 0; r < wanted.size(); ++r)
     EXPECT_LT(ratio(static_cast<double>(Quad(difference(r, 0) - wanted[r])), rate * rate * rate * rate, h * h), 30) << r;
+}
+
+TEST(dynamics, nothing_allocates_after_the_first_call) {
+  laws::count_allocations();
+  if (laws::allocation_count == nullptr) GTEST_SKIP() << "allocations are not counted in this build";
+  const Moving k(101, false);
+  Dynamics<double> d(k.model, k.g);
+  VectorX<double> a, lambda, tau;
+  const auto step = [&] {
+    (void)d.update(k.q, k.nu, k.damping);
+    d.rnea(k.acceleration, tau);
+    (void)d.aba(k.tau, a);
+    (void)d.constrained_aba(k.tau, k.wanted, a, lambda);
+  };
+  step();
+  const std::int64_t before = laws::allocation_count();
+  step();
+  EXPECT_EQ(laws::allocation_count() - before, 0);
+  const VectorX<double> seen = VectorX<double>::Zero(100);
+  EXPECT_GT(laws::allocation_count() - before, 0) << "the counter counts " << seen.size();
 }
 
 TEST(dynamics, what_is_wrong_is_said) {
