@@ -24,6 +24,15 @@ LawResult outcome(const laws::LawRow& law, const OperatorRow& op, const laws::Ca
   return r;
 }
 
+/// Why a law does not apply; nullptr: it does, or that could not be found out because the operator gave no answer.
+const char* not_applicable(const laws::LawRow& law, const OperatorRow& op, const laws::Case& c) {
+  try {
+    return law.why_not(op, c);
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
 /// In double.
 bool is_definition(const laws::LawRow& law) { return law.name.find("= definition") != std::string_view::npos && law.name.rfind("exact", 0) != 0; }
 
@@ -62,7 +71,7 @@ void verify_one(const Scene& scene, const std::vector<const OperatorRow*>& ops, 
       continue;
     }
     r.law = std::string(law.name);
-    const char* const why_not = law.why_not(*ops[p.op], c);
+    const char* const why_not = not_applicable(law, *ops[p.op], c);
     r.left_out = why_not == nullptr;
     r.skipped = why_not ? why_not : stopped ? "interrupted" : "no time left";
   }
