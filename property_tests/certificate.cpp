@@ -132,7 +132,7 @@ template <class F> void check_refinement(const Options& o, const Question& q, do
   double before = 0;
   for (int steps = 0; steps <= 5; ++steps) {
     correct.restart();
-    const Report r = refinement.solve(q.a.data(), f.data(), Accuracy::full(), {steps},
+    const Report r = refinement.solve({.r2 = q.a.data()}, f.data(), Accuracy::full(), {steps},
                                       [&](auto... x) { correct(q, x...); }, work.data(), nu.data());
     if (r.error_bound < 0 || r.iterations < steps) return;
     const VectorX<Quad> motion = converted<Quad>(MatrixX<double>(nu)), force = converted<Quad>(MatrixX<double>(f));

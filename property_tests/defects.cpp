@@ -13,7 +13,7 @@ const std::vector<DefectRow>& defects() {
     DefectRow unchanged = defect<Place::answer>("unchanged", "dense_cholesky, and nothing done to it", [](auto) {});
     unchanged.base = {};
     std::vector<DefectRow> all{unchanged};
-    for (auto part : {problem_defects, damping_defects, answer_defects, rank_defects, paper_defects})
+    for (auto part : {problem_defects, damping_defects, answer_defects, pair_defects, rank_defects, paper_defects})
       for (DefectRow& d : part()) all.push_back(std::move(d));
     std::stable_partition(all.begin(), all.end(), [](const DefectRow& d) { return d.right(); });
     return all;

@@ -33,6 +33,7 @@ struct DefectRow {
 [[nodiscard]] std::vector<DefectRow> problem_defects();   ///< defects_problem.cpp: the mechanism is misread
 [[nodiscard]] std::vector<DefectRow> damping_defects();   ///< defects_damping.cpp: R⁻¹ is misread, or stale
 [[nodiscard]] std::vector<DefectRow> answer_defects();    ///< defects_answer.cpp: the answer is spoilt
+[[nodiscard]] std::vector<DefectRow> pair_defects();      ///< defects_pairs.cpp: ν is wrong, rows that come and go are
 [[nodiscard]] std::vector<DefectRow> rank_defects();      ///< defects_rank.cpp: hard rows are called dependent wrongly
 [[nodiscard]] std::vector<DefectRow> paper_defects();     ///< defects_paper.cpp: lines of the paper as printed
 

@@ -28,17 +28,23 @@ template <class T> class AsPrinted final : public Operator<T> {
     return do_update_damping(d);
   }
   Report do_update_damping(const Damping<T>& d) override {
-    const Damping<W> damping = wide(d);
-    R_inverse_ = reference::damping_matrix(*this->structure(), damping);
+    Damping<W> damping = wide(d);
     weighted_ = weights_.assign_inverse(damping);
+    for (const Index r : weights_.off()) damping.diagonal[static_cast<std::size_t>(r)] = W(0);
+    R_inverse_ = reference::damping_matrix(*this->structure(), damping);
     R_ = MatrixX<W>::Zero(this->size(), this->size());
     if (weighted_.ok()) fill_R();
     return weighted_;
   }
   Report do_apply(ConstRef<T> f, Ref<T> a, T*) const override {
     return columns(f, a, [&](paper::Transcription<W>& t, const VectorX<W>& x) {
-      const VectorX<W> y = t.apply(x);
-      return y.size() == 0 ? y : VectorX<W>(y + R_inverse_ * x);
+      VectorX<W> on = x;
+      weights_.switch_off(on.data());
+      VectorX<W> y = t.apply(on);
+      if (y.size() == 0) return y;
+      y += R_inverse_ * on;
+      weights_.switch_off(y.data());
+      return y;
     });
   }
   Report do_solve(ConstRef<T> a, Ref<T> f, T*) const override {

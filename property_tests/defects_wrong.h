@@ -52,14 +52,22 @@ template <class T> struct Answer {
   int calls;                 ///< before this one
 };
 
+/// The right-hand sides of a solve_kkt before it, and the pair after it.
+template <class T> struct PairOf {
+  bool before;
+  VectorX<T>&r1, &r2, &nu, &lambda;
+};
+
 /// What a defect does; a function left out does nothing.
 template <class T> struct Change {
   void (*structure)(Structure&) = nullptr;
   void (*numbers)(Numbers<T>) = nullptr;
   void (*damping)(Damped<T>) = nullptr;
   void (*answer)(Answer<T>) = nullptr;
+  void (*rows)(Problem<T>& p, const Problem<T>& before, Damping<T>& d, const Damping<T>& damping_before) = nullptr;  ///< of update_rows
+  void (*pair)(PairOf<T>) = nullptr;
 };
-enum class Place : std::uint8_t { structure, numbers, damping, answer };
+enum class Place : std::uint8_t { structure, numbers, damping, answer, rows, pair };
 
 /// Scratch memory of inner operators, one per thread: apply and solve are const.
 template <class T> Workspace<T>& scratch(Index scalars) {
@@ -82,7 +90,7 @@ template <class T> class Wrong final : public Operator<T> {
     damping_ = before_ = Damping<T>::uniform(this->size(), T(0));
     memory_ = MatrixX<T>::Zero(this->size(), 16);
     updates_ = calls_ = 0;
-    scratch<T>(inner_->workspace(16));
+    scratch<T>(std::max(inner_->workspace(16), inner_->kkt_workspace()));
   }
   Report do_update(const Problem<T>& p, const Damping<T>& d) override {
     copy(p, numbers_);
@@ -92,9 +100,32 @@ template <class T> class Wrong final : public Operator<T> {
     ++updates_;
     return r.ok() ? inner_->update(numbers_, changed(d, false)) : r;
   }
+  Report do_update_rows(const Problem<T>& p, const Damping<T>& d) override {
+    if (!change_.rows) return do_update(p, d);
+    Problem<T> seen = p;
+    Damping<T> damped = d;
+    change_.rows(seen, numbers_, damped, damping_);
+    copy(seen, numbers_);
+    damping_ = damped;
+    return inner_->update(numbers_, damped);
+  }
   Report do_update_damping(const Damping<T>& d) override { return inner_->update_damping(changed(d, true)); }
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override { return answer(false, f, a, workspace); }
   Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override { return answer(true, a, f, workspace); }
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start, T*) const override {
+    using Map = Eigen::Map<const VectorX<T>>;
+    Workspace<T>& w = scratch<T>(inner_->kkt_workspace());
+    const Index n = this->structure()->dofs(), m = this->size();
+    if (!change_.pair)
+      return inner_->solve_kkt(Map(r1, n), Map(r2, m), Eigen::Map<VectorX<T>>(nu, n), Eigen::Map<VectorX<T>>(lambda, m), wanted, w);
+    VectorX<T> right1 = Map(r1, n), right2 = Map(r2, m), motion = VectorX<T>::Constant(n, T(0)), force = VectorX<T>::Constant(m, T(0));
+    change_.pair({true, right1, right2, motion, force});
+    const Report r = inner_->solve_kkt(right1, right2, motion, force, wanted, w);
+    change_.pair({false, right1, right2, motion, force});
+    std::copy_n(motion.data(), n, nu);
+    std::copy_n(force.data(), m, lambda);
+    return r;
+  }
   [[nodiscard]] Index do_workspace(Index) const override { return 1; }
   [[nodiscard]] Index do_bytes() const override { return inner_->bytes(); }
 
@@ -107,8 +138,9 @@ template <class T> class Wrong final : public Operator<T> {
     to.joint_K = from.joint_K;
   }
   const Damping<T>& changed(const Damping<T>& d, bool alone) {
-    if (!change_.damping) return d;
+    if (!change_.damping && !change_.rows) return d;
     damping_ = d;
+    if (!change_.damping) return damping_;
     change_.damping({damping_, before_, alone});
     before_ = d;
     return damping_;
@@ -135,6 +167,8 @@ template <Place P, class F, class T> std::unique_ptr<Operator<T>> make_wrong() {
   if constexpr (P == Place::numbers) change.numbers = F{};
   if constexpr (P == Place::damping) change.damping = F{};
   if constexpr (P == Place::answer) change.answer = F{};
+  if constexpr (P == Place::rows) change.rows = F{};
+  if constexpr (P == Place::pair) change.pair = F{};
   return std::make_unique<Wrong<T>>(change);
 }
 
@@ -143,7 +177,7 @@ template <Place P, class F> DefectRow defect(std::string_view name, std::string 
   OperatorRow op = find_operator("dense_cholesky");
   op.name = name;
   op.makers = {make_wrong<P, F, double>, make_wrong<P, F, float>, make_wrong<P, F, Quad>, nullptr, make_wrong<P, F, Rational>, nullptr};
-  return {name, std::move(what), "dense_cholesky", op, unseen, P == Place::damping};
+  return {name, std::move(what), "dense_cholesky", op, unseen, P == Place::damping || P == Place::rows || P == Place::pair};
 }
 
 /// T of Numbers<T>, Damped<T>, Answer<T>.

@@ -16,10 +16,10 @@ template <class T> class FactorView {
   static const T& d_inverse(const Factor<T>& f, int column) { return f.d_inverse_[static_cast<std::size_t>(column)]; }
   static void backward(const Factor<T>& f, const T* x, Six<T>* forces, T* u) {
     f.scatter(x, forces, u);
-    f.backward(forces, u);
+    f.backward(f.plan_->active_runs(), forces, u);
   }
   static void forward(const Factor<T>& f, Six<T>* forces, T* u, T* y) {
-    f.forward(forces, u);
+    f.forward(f.plan_->active_runs(), forces, u);
     f.gather(forces, u, y);
   }
 };

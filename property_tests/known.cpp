@@ -40,6 +40,16 @@ bool within_double(const Case& c) {
   return true;
 }
 
+}  // namespace
+
+const reference::Dense<Quad>& matrices(const Case& c) {
+  reference::Sensitivity* s = sensitivity(c);
+  if (!s) throw std::runtime_error("no definition: " + c.known->no_sensitivity);
+  return s->matrices();
+}
+
+namespace {
+
 const MatrixX<Rational>& exact_definition(Function f, const Case& c) {
   Known& known = *c.known;
   if (!known.exact) {

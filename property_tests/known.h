@@ -63,6 +63,8 @@ struct Known {
 [[nodiscard]] bool damped(const Case& c);
 /// A and A⁻¹ by the definition in Quad or Rational. Shapes m×m. @throws std::runtime_error when singular.
 template <class T> [[nodiscard]] const MatrixX<Wide<T>>& definition(Function f, const Case& c);
+/// M, J and what follows from them in Quad. Needs why_no_bound(apply) == nullptr.
+[[nodiscard]] const reference::Dense<Quad>& matrices(const Case& c);
 /// Bound on the error of f(x) by an operator of this row, per unit roundoff. Shapes m×k.
 [[nodiscard]] MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x,
                                         Data data = Data::given);

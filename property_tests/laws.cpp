@@ -126,7 +126,7 @@ std::vector<LawRow> first_laws() {
 const std::vector<LawRow>& laws() {
   static const std::vector<LawRow> table = [] {
     std::vector<LawRow> all;
-    for (const auto group : {first_laws, order_laws, row_laws, rank_laws, mechanism_laws, scalar_laws})
+    for (const auto group : {first_laws, order_laws, row_laws, pair_laws, rank_laws, mechanism_laws, scalar_laws})
       for (const LawRow& row : group()) all.push_back(row);
     return all;
   }();

@@ -143,14 +143,19 @@ Verdict no_allocation(const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 5, c.seed);
   MatrixX<double> y(c.rows(), 5);
   Workspace<double> w(operation->workspace(5));
-  const char* phases[] = {"update", "update_damping", "apply", "solve"};
-  for (int step = op.grows ? -4 : 0; step < 4; ++step) {  // who grows is asked twice
-    const int phase = (step + 4) % 4;
+  const MatrixX<double> r1 = vectors<double>(c.problem.structure->dofs(), 5, c.seed + 1);
+  MatrixX<double> nu = r1;
+  Workspace<double> of_pairs(operation->kkt_workspace());
+  const char* phases[] = {"update", "update_rows", "update_damping", "apply", "solve", "solve_kkt"};
+  for (int step = op.grows ? -6 : 0; step < 6; ++step) {  // who grows is asked twice
+    const int phase = (step + 6) % 6;
     const std::int64_t before = allocation_count();
     if (phase == 0) static_cast<void>(operation->update(c.problem, c.damping));
-    if (phase == 1) static_cast<void>(operation->update_damping(other));
-    if (phase == 2 && op.applies) static_cast<void>(operation->apply(x, y, w));
-    if (phase == 3 && op.solves) static_cast<void>(operation->solve(x, y, w));
+    if (phase == 1) static_cast<void>(operation->update_rows(c.problem, c.damping));
+    if (phase == 2) static_cast<void>(operation->update_damping(other));
+    if (phase == 3 && op.applies) static_cast<void>(operation->apply(x, y, w));
+    if (phase == 4 && op.solves) static_cast<void>(operation->solve(x, y, w));
+    if (phase == 5 && op.solves) static_cast<void>(operation->solve_kkt(r1, x, nu, y, Accuracy::full(), of_pairs));
     const std::int64_t count = allocation_count() - before;
     if (step >= 0 && count != 0) return failure(std::string(phases[phase]) + " allocates " + std::to_string(count) + " times", "zero");
   }

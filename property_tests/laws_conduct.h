@@ -20,7 +20,7 @@ template <Function F> [[nodiscard]] Verdict nan_stays(const OperatorRow& op, con
 [[nodiscard]] Verdict few_steps(const OperatorRow& op, const Case& c);
 
 [[nodiscard]] const char* why_not_allocation(const OperatorRow& op, const Case& c);
-/// After analyze, none of update, update_damping, apply and solve allocates.
+/// After analyze, none of update, update_rows, update_damping, apply, solve and solve_kkt allocates.
 [[nodiscard]] Verdict no_allocation(const OperatorRow& op, const Case& c);
 
 [[nodiscard]] const char* why_not_zero_columns(const OperatorRow& op, const Case& c);

@@ -8,6 +8,7 @@ namespace delassus::laws {
 
 [[nodiscard]] std::vector<LawRow> order_laws();       ///< inequalities between quadratic forms, and the fixed point
 [[nodiscard]] std::vector<LawRow> row_laws();         ///< fewer, other, parallel rows; other units
+[[nodiscard]] std::vector<LawRow> pair_laws();        ///< motion and force together; rows that come and go
 [[nodiscard]] std::vector<LawRow> rank_laws();        ///< which hard rows depend on others, in any description
 [[nodiscard]] std::vector<LawRow> mechanism_laws();   ///< other descriptions of the same mechanism
 [[nodiscard]] std::vector<LawRow> scalar_laws();      ///< float, Quad, refusals, threads

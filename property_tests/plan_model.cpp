@@ -110,7 +110,9 @@ class Model {
   }
 
   void check_runs() const {
-    int next = plan_.first_active;
+    int next = 0;
+    const auto active = plan_.active_runs();
+    expect((active.empty() ? plan_.steps : active.front().begin) == plan_.first_active, "the first active run", plan_.first_active_run);
     for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
       const Plan::Run& run = plan_.runs[k];
       expect(run.begin == next && run.end > run.begin && run.end <= plan_.steps, "runs", run.begin);
@@ -121,7 +123,7 @@ class Model {
         const bool simple = plan_.first_member[i + 1] - plan_.first_member[i] == 1 && plan_.members[plan_.first_member[i]].block < 0;
         expect(run.dofs == s_.dofs(plan_.body[i]) && run.simple == simple, "a step unlike its run", i);
       }
-      expect(k == 0 || plan_.runs[k - 1].dofs != run.dofs || plan_.runs[k - 1].simple != run.simple, "two equal runs in a row", run.begin);
+      expect(k == 0 || run.begin == plan_.first_active || plan_.runs[k - 1].dofs != run.dofs || plan_.runs[k - 1].simple != run.simple, "two equal runs in a row", run.begin);
       next = run.end;
     }
     expect(next == plan_.steps, "steps without a run", next);

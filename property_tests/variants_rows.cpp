@@ -69,6 +69,27 @@ template <class T> void stack(Parts<T>& parts, std::size_t i, std::size_t j) {
   }
 }
 
+template <class T> MatrixX<T> without_row(const MatrixX<T>& x, Index row) {
+  MatrixX<T> y(x.rows() - 1, x.cols());
+  y.topRows(row) = x.topRows(row);
+  y.bottomRows(y.rows() - row) = x.bottomRows(y.rows() - row);
+  return y;
+}
+
+/// Row k of a constraint left out, and its row and column of a block.
+template <class T> void leave_out(typename Parts<T>::Constraint& c, Index k) {
+  c.from.erase(c.from.begin() + k);
+  c.diagonal.erase(c.diagonal.begin() + k);
+  for (auto& l : c.links) l.K = without_row<T>(l.K, k);
+  if (c.joint != ground) c.joint_K = without_row<T>(c.joint_K, k);
+  for (auto& b : c.blocks) {
+    const Index at = k - b.row;
+    if (at < 0) --b.row;
+    else if (at < b.R_inverse.rows()) b.R_inverse = without_row<T>(without_row<T>(b.R_inverse, at).transpose(), at);
+  }
+  std::erase_if(c.blocks, [](const auto& b) { return b.R_inverse.rows() == 0; });
+}
+
 }  // namespace
 
 Index constraint_count(const Structure& s) {
@@ -78,6 +99,15 @@ Index constraint_count(const Structure& s) {
 template <class T> Second<T> one_left_out(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed) {
   Parts<T> parts = apart(p, d);
   parts.constraints.erase(parts.constraints.begin() + (&chosen(parts, seed) - parts.constraints.data()));
+  return together(parts);
+}
+
+template <class T> Second<T> rows_left_out(const Problem<T>& p, const Damping<T>& d, const std::vector<Index>& rows) {
+  Parts<T> parts = apart(p, d);
+  for (auto& c : parts.constraints)
+    for (Index k = c.rows(); k-- > 0;)
+      if (std::find(rows.begin(), rows.end(), c.from[static_cast<std::size_t>(k)]) != rows.end()) leave_out<T>(c, k);
+  std::erase_if(parts.constraints, [](const auto& c) { return c.rows() == 0; });
   return together(parts);
 }
 
@@ -175,6 +205,7 @@ template <class T> Second<T> in_units(const Problem<T>& p, const Damping<T>& d, 
 
 #define DELASSUS_VARIANTS(T)                                                             \
   template Second<T> one_left_out(const Problem<T>&, const Damping<T>&, std::uint64_t);  \
+  template Second<T> rows_left_out(const Problem<T>&, const Damping<T>&, const std::vector<Index>&); \
   template Second<T> reordered(const Problem<T>&, const Damping<T>&, std::uint64_t);     \
   template Second<T> with_idle_links(const Problem<T>&, const Damping<T>&);              \
   template Second<T> doubled(const Problem<T>&, const Damping<T>&, std::uint64_t);       \

@@ -10,6 +10,8 @@ namespace delassus::laws {
 
 /// One constraint, chosen by `seed`, left out. Needs two.
 template <class T> [[nodiscard]] Second<T> one_left_out(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
+/// These rows (ascending) left out, and with the last row of a constraint the constraint.
+template <class T> [[nodiscard]] Second<T> rows_left_out(const Problem<T>& p, const Damping<T>& d, const std::vector<Index>& rows);
 /// The constraints in a random order.
 template <class T> [[nodiscard]] Second<T> reordered(const Problem<T>& p, const Damping<T>& d, std::uint64_t seed);
 /// Every link constraint has one body more, with K = 0. A is the same.

@@ -19,6 +19,8 @@ template <class T> void BlockDiagonal<T>::analyze(const Structure& s) {
     size += m * m;
     largest = std::max(largest, m * m);
   }
+  off_.clear();
+  off_.reserve(static_cast<std::size_t>(s.rows));
   has_dense_.assign(rows_.size(), 0);
   diagonal_.assign(static_cast<std::size_t>(s.rows), T(0));
   dense_.assign(static_cast<std::size_t>(size), T(0));
@@ -26,9 +28,25 @@ template <class T> void BlockDiagonal<T>::analyze(const Structure& s) {
   any_dense_ = false;
 }
 
+// Of a block of `count` rows from `row` on: rows and columns that are off are zero but for their diagonal.
+template <class T> void BlockDiagonal<T>::set_off(T* dense, Index row, Index count, const T& diagonal) const {
+  for (const Index r : off_) {
+    const Index k = r - row;
+    if (k < 0 || k >= count) continue;
+    for (Index s = 0; s < count; ++s) dense[k * count + s] = dense[s * count + k] = T(0);
+    dense[k * count + k] = diagonal;
+  }
+}
+
 template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
   std::fill(has_dense_.begin(), has_dense_.end(), 0);
   std::copy(damping.diagonal.begin(), damping.diagonal.end(), diagonal_.begin());
+  off_.clear();
+  for (std::size_t r = 0; r < diagonal_.size(); ++r)
+    if (ScalarTraits<T>::is_infinite(diagonal_[r])) {
+      off_.push_back(static_cast<Index>(r));
+      diagonal_[r] = T(0);
+    }
   any_dense_ = !damping.blocks.empty();
   for (const auto& b : damping.blocks) {
     const Index m = b.R_inverse.rows();
@@ -42,6 +60,7 @@ template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
     }
     for (Index c = 0; c < m; ++c)
       for (Index r = 0; r < m; ++r) dense[(b.row - row + c) * count + b.row - row + r] = b.R_inverse(r, c);
+    if (!off_.empty()) set_off(dense, row, count, T(0));
   }
 }
 
@@ -61,29 +80,36 @@ template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& dam
     int usable = 1;
     for (T& d : diagonal_) usable &= ScalarTraits<T>::usable_pivot(d);
     for (T& d : diagonal_) d = usable ? T(1) / d : d;
+    if (usable) switch_off(diagonal_.data());  // where a shift made them positive
     if (usable) return {};
   }
   for (std::size_t e = 0; e < rows_.size(); ++e) {
     const auto [row, m] = rows_[e];
     if (has_dense_[e]) {  // R_e = (R_e⁻¹)⁻¹ by LDLᵀ
       T* const dense = dense_.data() + first_[e];
+      set_off(dense, row, m, T(1));
       std::copy_n(dense, m * m, scratch_.begin());
       const Index lost = ldlt_factor(scratch_.data(), m, m);
       if (lost >= 0) return {Status::zero_damping, row + lost};
       ldlt_inverse(scratch_.data(), m, m, dense);
+      set_off(dense, row, m, T(0));
       continue;
     }
     for (Index r = row; r < row + m; ++r) {
-      if (!ScalarTraits<T>::usable_pivot(diagonal_[r])) return {Status::zero_damping, r};
+      if (!ScalarTraits<T>::usable_pivot(diagonal_[r])) {
+        if (std::binary_search(off_.begin(), off_.end(), r)) continue;
+        return {Status::zero_damping, r};
+      }
       diagonal_[r] = T(1) / diagonal_[r];
     }
   }
+  switch_off(diagonal_.data());
   return {};
 }
 
 template <class T> Index BlockDiagonal<T>::bytes() const {
   return static_cast<Index>((diagonal_.size() + dense_.size() + scratch_.size()) * sizeof(T) +
-                            rows_.size() * (sizeof(Rows) + sizeof(Index) + 1) + constraint_of_.size() * sizeof(Index));
+                            rows_.size() * (sizeof(Rows) + sizeof(Index) + 1) + 2 * constraint_of_.size() * sizeof(Index));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class BlockDiagonal<T>;

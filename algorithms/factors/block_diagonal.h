@@ -1,4 +1,5 @@
-// R⁻¹ as given, or R: diagonal, or one dense symmetric block for a constraint whose damping is given as a block.
+// R⁻¹ as given, or R: diagonal, or one dense symmetric block for a constraint whose damping is given as a block. Of a row that is
+// off (R⁻¹ = ∞) both hold 0: its λ is 0, and so is what it adds anywhere.
 // No allocation after analyze, whatever blocks a Damping brings.
 #pragma once
 
@@ -23,10 +24,17 @@ template <class T> class BlockDiagonal {
     const auto rounded = [&](const U& x) { return static_cast<T>(U(x / unit)); };
     std::transform(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin(), rounded);
     std::transform(other.dense_.begin(), other.dense_.end(), dense_.begin(), rounded);
+    off_ = other.off_;
     has_dense_ = other.has_dense_;
     any_dense_ = other.any_dense_;
   }
 
+  /// The rows with R⁻¹ = ∞, ascending.
+  [[nodiscard]] const std::vector<Index>& off() const { return off_; }
+  /// x_r = 0 of the rows that are off, for values of V.
+  template <class V> void switch_off(V* x) const {
+    for (const Index r : off_) x[r] = V{};
+  }
   [[nodiscard]] const T& diagonal(Index row) const { return diagonal_[row]; }
   /// The block of constraint e (link constraints first, then joint constraints), rows × rows, or nullptr when diagonal.
   [[nodiscard]] const T* dense(Index e) const { return has_dense_[e] ? dense_.data() + first_[e] : nullptr; }
@@ -48,12 +56,14 @@ template <class T> class BlockDiagonal {
  private:
   template <class U> friend class BlockDiagonal;
   void add_to_diagonal(const T* shift);
+  void set_off(T* dense, Index row, Index count, const T& diagonal) const;
   struct Rows {
     Index first, count;
   };
   std::vector<Rows> rows_;           // per constraint
   std::vector<Index> first_;         // per constraint: its block in dense_
   std::vector<Index> constraint_of_; // per row
+  std::vector<Index> off_;
   std::vector<char> has_dense_;
   std::vector<T> diagonal_, dense_, scratch_;
   bool any_dense_ = false;

@@ -8,7 +8,7 @@ namespace delassus {
 
 template <class T, class F> void CappedInverse<T, F>::analyze(const Structure& structure) {
   structure_ = std::make_shared<const Structure>(structure);
-  plan_ = make_plan(*structure_, Matrix::M_R, Branches::all);
+  plan_ = make_plan(*structure_, Matrix::M_R);
   factor_.analyze(*structure_, plan_);
   narrow_ = Problem<F>(structure_);
   weights_.analyze(*structure_);
@@ -94,7 +94,7 @@ void CappedInverse<T, F>::solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lamb
 
 template <class T, class F> Index CappedInverse<T, F>::workspace() const {
   static_assert(sizeof(F) <= sizeof(T));
-  return 2 * padded(structure_->dofs()) + 3 * padded(structure_->rows) + factor_.workspace();
+  return 2 * padded(structure_->dofs()) + 3 * padded(structure_->rows) + factor_.solve_workspace();
 }
 
 template <class T, class F> Index CappedInverse<T, F>::bytes() const {

@@ -20,7 +20,7 @@ template <class T, class F> class CappedInverse {
  public:
   explicit CappedInverse(double g) : g_(g) {}
   void analyze(const Structure& structure);
-  /// `M` is the factor of M at the same configuration, every joint active.
+  /// `M` is the factor of M at the same configuration.
   [[nodiscard]] Report update(const Problem<T>& problem, const Factor<T>& M);
   [[nodiscard]] Report update_damping(const Damping<T>& damping);
   /// Shapes n, m, n, m; `work` needs workspace() scalars T. r1 may be nullptr (zero) and d_nu nullptr (not wanted).

@@ -99,12 +99,21 @@ template <class T> Report Factor<T>::start(const Problem<T>& problem) {
       shift_[c] = armature_[c] = problem.armature[dof];
     }
   }
-  links_.load(problem);
-  std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
-  joint_k_ = joint_k0_;
+  load_rows(problem);
   const Report report = eliminate(0, plan_->first_active);
   for (const int i : early_) add(given(plan_->parent[i]), inertia_[i]);
   return report;
+}
+
+template <class T> void Factor<T>::load_rows(const Problem<T>& problem) {
+  links_.load(problem);
+  std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
+  joint_k_ = joint_k0_;
+}
+
+template <class T> void Factor<T>::move_rows(const Problem<T>& problem) {
+  load_rows(problem);
+  for (int step = 0; step < plan_->active(); ++step) into_basis(step);
 }
 
 template <class T> Report Factor<T>::update_weights(const BlockDiagonal<T>& weights) {
@@ -149,6 +158,8 @@ template <class T> Report Factor<T>::eliminate(int begin, int end) {
 }
 
 template <class T> Index Factor<T>::workspace() const { return 8 * plan_->active() + (plan_->active_columns() + 7) / 8 * 8; }
+
+template <class T> Index Factor<T>::solve_workspace() const { return 8 * plan_->steps + (plan_->first_column[plan_->steps] + 7) / 8 * 8; }
 
 template <class T> Index Factor<T>::bytes() const {
   const auto sixes = s_.size() + s0_.size() + e_.size() + w_.size() + unscaled_.size();

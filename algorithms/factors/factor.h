@@ -26,6 +26,8 @@ template <class T> class Factor {
   void analyze(const Structure& structure, const Plan& plan);
   /// Numbers at a configuration, and phase A. Report: lost_pivot with the body's first degree of freedom.
   [[nodiscard]] Report start(const Problem<T>& problem);
+  /// Takes K and 𝒦 of rows that moved at the same configuration. A factor of M is as good as before; one of M_R needs new weights.
+  void move_rows(const Problem<T>& problem);
   /// The rest of the factor of M_R; what start computed is kept, so that new weights cost no more than they must.
   [[nodiscard]] Report update_weights(const BlockDiagonal<T>& weights);
   /// The rest of the factor of M, once after each start.
@@ -34,26 +36,27 @@ template <class T> class Factor {
   /// y = J M_R⁻¹ Jᵀ x, shapes m. `work` needs workspace() values of V. x and y may be the same.
   template <class V> void project(const V* x, V* y, V* work) const;
 
-  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), every joint active (Branches::all). τ and ν in the problem's order of degrees of
-  /// freedom; τ = nullptr: zero.
+  /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), of every joint. τ and ν in the problem's order of degrees of freedom; τ = nullptr: zero.
+  /// `work` needs solve_workspace() scalars.
   void solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
-  /// τᵀ M_R⁻¹ τ, by the backward sweep alone; every joint active.
+  /// τᵀ M_R⁻¹ τ, by the backward sweep alone; `work` as for solve.
   [[nodiscard]] T energy(const T* tau, T* work) const;
 
   /// z with xᵀ J M⁻¹Jᵀ x' = Σ z_c z'_c / inverse_pivots()[c], c < columns(), by the backward sweep alone.
   void half(const T* x, T* z, T* work) const;
-  /// 1/D of the columns that vectors visit, in the order of the sweeps.
+  /// 1/D of the columns that Jᵀx reaches, in the order of the sweeps.
   [[nodiscard]] const T* inverse_pivots() const { return d_inverse_.data() + plan_->first_column[plan_->first_active]; }
   [[nodiscard]] Index columns() const { return plan_->active_columns(); }
 
   /// d_r ≥ (J M⁻¹Jᵀ)_rr, equal for rows on one body or joint, at most k times it and twice the mixed terms for k links: from
-  /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M, every joint
-  /// active. `omega` is scratch, one per body. Cost about 300 operations per body. Shape m.
+  /// the mobilities Ω_i (6×6 inverse inertia of body i seen from outside, paper's [34]). For the factor of M.
+  /// `omega` is scratch, one per body. Cost about 300 operations per body. Shape m.
   void row_mobility(T* d, SixBySix<T>* omega) const;
   /// d_j = (M⁻¹)_jj of every degree of freedom, in the problem's order, likewise. Shape n.
   void joint_mobility(T* d, SixBySix<T>* omega) const;
 
   [[nodiscard]] Index workspace() const;  ///< values of V
+  [[nodiscard]] Index solve_workspace() const;
   [[nodiscard]] Index bytes() const;
 
  private:
@@ -65,6 +68,8 @@ template <class T> class Factor {
   };
 
   void find_sources();
+  void load_rows(const Problem<T>& problem);
+  void into_basis(int step);
   void add_weights(const BlockDiagonal<T>& weights);
   void add_joint_weights(const BlockDiagonal<T>& weights);
   Report eliminate(int begin, int end);
@@ -84,8 +89,10 @@ template <class T> class Factor {
   void add_torques(const T* tau, T* u) const;
   Matrix6<T> mobility(int i, SixBySix<T>* omega) const;
   void velocities(const T* u, T* nu) const;
-  template <class V> void backward(Six<V>* f, V* u) const;
-  template <class V> void forward(Six<V>* f, V* u) const;
+  // f and u begin at the first active step and column; those of phase A stand before them.
+  template <class V> void backward(Plan::Runs runs, Six<V>* f, V* u) const;
+  template <class V> void forward(Plan::Runs runs, Six<V>* f, V* u) const;
+  struct Whole;  // f and u of every step
   template <class V> void gather(const Six<V>* f, const V* u, V* y) const;
 
   const Structure* structure_ = nullptr;

@@ -106,13 +106,21 @@ template <class T> template <class N> void Factor<T>::take_basis(int i, N n, con
   take(s);
   take(e);
   for (int k = 0; k < plan_->first_member[i + 1] - plan_->first_member[i]; ++k) take(unscaled_.data() + k * n);
-  const int step = i - plan_->first_active;
-  for (int j = step < 0 ? 0 : first_joint_rows_[step]; j < (step < 0 ? 0 : first_joint_rows_[step + 1]); ++j)
+  if (i >= plan_->first_active) into_basis(i - plan_->first_active);
+}
+
+// 𝒦 ← 𝒦 E of the rows on the joint of an active step; E is unit upper triangular
+template <class T> void Factor<T>::into_basis(int step) {
+  const int of_joint = vector_of_[step + plan_->first_active];
+  if (of_joint < 0) return;
+  const Six<T>* const e = e_.data() + of_joint;
+  for (int j = first_joint_rows_[step]; j < first_joint_rows_[step + 1]; ++j)
     for (Index r = 0; r < joint_rows_[j].rows; ++r) {
-      const Index at = joint_rows_[j].first + r * n;
-      for (int c = 0; c < n; ++c) joint_k_[at + c] = joint_k0_[at + c];
-      for (int c = 0; c < n; ++c)
-        for (int d = c + 1; d < n; ++d) joint_k_[at + d] -= joint_k_[at + c] * L[d][c];
+      const Index at = joint_rows_[j].first + r * joint_rows_[j].dofs;
+      for (int c = 0; c < joint_rows_[j].dofs; ++c) {
+        joint_k_[at + c] = joint_k0_[at + c];
+        for (int d = 0; d < c; ++d) joint_k_[at + c] += joint_k0_[at + d] * e[c][d];
+      }
     }
 }
 
@@ -157,7 +165,7 @@ template <class T> template <class N> void Factor<T>::update_members(int i, N n,
   }
 }
 
-#define DELASSUS_INSTANTIATE(T) template SixBySix<T> Factor<T>::inertia(int) const; template bool Factor<T>::eliminate(int);
+#define DELASSUS_INSTANTIATE(T) template SixBySix<T> Factor<T>::inertia(int) const; template bool Factor<T>::eliminate(int); template void Factor<T>::into_basis(int);
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 #ifdef DELASSUS_EXACT
 DELASSUS_INSTANTIATE(Stochastic)

@@ -109,14 +109,14 @@ template <class T> void HardRows<T>::take(Index row, Index k, const T& pivot, co
 }
 
 template <class T>
-Index HardRows<T>::factor(const std::vector<char>& hard, const BlockDiagonal<T>& damping, const Factor<T>& M, Index* order, T* work) {
+Index HardRows<T>::factor(const std::vector<Kind>& kinds, const BlockDiagonal<T>& damping, const Factor<T>& M, Index* order, T* work) {
   if (!columns_are_current_) columns(M, work);
   const Index m = Y_.cols();
   rest_ = Y_;
   ends_.setZero();
   for (Index r = 0; r < m; ++r) {
-    open_[r] = hard[r] ? 1 : 2;
-    if (!hard[r]) ends_(r, r) = T(1);
+    open_[r] = kinds[r] == Kind::off ? 0 : kinds[r] == Kind::hard ? 1 : 2;
+    if (open_[r] == 2) ends_(r, r) = T(1);
   }
   Index k = 0;
   T pivot(0);
@@ -126,7 +126,7 @@ Index HardRows<T>::factor(const std::vector<char>& hard, const BlockDiagonal<T>&
   }
   Index left_out = m;
   for (Index r = m; r-- > 0;)
-    if (open_[r] == 1) {
+    if (open_[r] == 1 || kinds[r] == Kind::off) {
       order[--left_out] = r;
       open_[r] = 0;
     }

@@ -25,9 +25,10 @@ template <class T> class HardRows {
   void analyze(const Structure& structure);
   /// Sizes; the columns of Y when next asked for. `M` is the factor of M, every joint active.
   void update(const Problem<T>& problem, const Factor<T>& M);
-  /// Factors A of the rows; `hard` marks (m) those with R⁻¹ = 0, `damping` holds R⁻¹. order[0 … rank) are the rows in the order
-  /// of their pivots, the hard ones first; those left out follow. Returns the rank. `work` needs the workspace of M.
-  Index factor(const std::vector<char>& hard, const BlockDiagonal<T>& damping, const Factor<T>& M, Index* order, T* work);
+  /// Factors A of the rows; `kinds` says (m) which are hard (R⁻¹ = 0) or off (R⁻¹ = ∞), `damping` holds R⁻¹. order[0 … rank) are
+  /// the rows in the order of their pivots, the hard ones first; those left out, and those that are off, follow. Returns the rank. `work` needs the workspace of M.
+  enum class Kind : std::uint8_t { damped, hard, off };
+  Index factor(const std::vector<Kind>& kinds, const BlockDiagonal<T>& damping, const Factor<T>& M, Index* order, T* work);
 
   /// B_r.
   [[nodiscard]] const T& size(Index row) const { return sizes_[row]; }
@@ -47,7 +48,7 @@ template <class T> class HardRows {
   std::vector<T> of_motion_, of_rows_;                // n, m: the row taken, in the metric
   std::vector<SixBySix<T>> omega_;
   MatrixX<T> Y_, rest_, ends_, shares_;               // n × m: D⁻¹Y, what is left of it; m × m: of the unit vectors
-  std::vector<char> open_;                            // per row: 0 taken, 1 hard, 2 damped
+  std::vector<char> open_;                            // per row: 0 taken or off, 1 hard, 2 damped
   bool columns_are_current_ = false;
 };
 

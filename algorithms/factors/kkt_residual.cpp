@@ -21,9 +21,13 @@ template <class T> void KktResidual<T>::analyze(std::shared_ptr<const Structure>
 
 template <class T> void KktResidual<T>::update(const Problem<T>& problem) {
   std::transform(problem.S.begin(), problem.S.end(), s_.begin(), [](const Vector6<T>& x) { return load(x); });
-  std::transform(problem.K.begin(), problem.K.end(), k_.begin(), [](const Vector6<T>& x) { return load(x); });
   std::transform(problem.H.begin(), problem.H.end(), h_.begin(), [](const Matrix6<T>& x) { return load(x); });
   std::copy(problem.armature.begin(), problem.armature.end(), armature_.begin());
+  update_rows(problem);
+}
+
+template <class T> void KktResidual<T>::update_rows(const Problem<T>& problem) {
+  std::transform(problem.K.begin(), problem.K.end(), k_.begin(), [](const Vector6<T>& x) { return load(x); });
   std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k_.begin());
 }
 
@@ -62,6 +66,7 @@ void KktResidual<T>::evaluate(const V* nu, const V* lambda, const T* r1_0, const
   link_rows(lambda, r2_0, r2, b);
   for (std::size_t c = 0; c < s_.size(); ++c) b.torque[c] = V(r1_0 == nullptr ? T(0) : r1_0[c]) - nu[c] * armature_[c];
   joint_rows(nu, lambda, r2_0, r2, b);
+  damping_.switch_off(r2);
   inward(r1, b);
 }
 

@@ -19,9 +19,13 @@ template <class T> class KktResidual {
  public:
   void analyze(std::shared_ptr<const Structure> structure);
   void update(const Problem<T>& problem);
+  /// K and 𝒦 alone.
+  void update_rows(const Problem<T>& problem);
   /// What update was given; `to` has the structure and the sizes.
   void numbers(Problem<T>& to) const;
   void update_damping(const Damping<T>& damping) { damping_.assign(damping); }
+  /// R⁻¹; rows that are off have no residual.
+  [[nodiscard]] const BlockDiagonal<T>& damping() const { return damping_; }
 
   /// r1 (n, in the problem's order of degrees of freedom) and r2 (m), from r1_0 (nullptr: 0) and r2_0, which they may
   /// replace. V is Wide<T> or T. `work` needs workspace() scalars T.

@@ -126,14 +126,16 @@ class Blocks {
 };
 
 void append_runs(Plan& plan) {
-  for (int i = plan.first_active; i < plan.steps; ++i) {
+  for (int i = 0; i < plan.steps; ++i) {
     const int dofs = plan.first_column[i + 1] - plan.first_column[i];
     const bool simple = plan.simple(i);
-    if (plan.runs.empty() || plan.runs.back().dofs != dofs || plan.runs.back().simple != simple)
+    if (i == plan.first_active) plan.first_active_run = narrow(static_cast<Index>(plan.runs.size()));
+    if (i == plan.first_active || plan.runs.empty() || plan.runs.back().dofs != dofs || plan.runs.back().simple != simple)
       plan.runs.push_back({i, i, dofs, simple, simple && dofs == 1});
     else if (plan.parent[i - 1] != i) plan.runs.back().chain = false;
     plan.runs.back().end = i + 1;
   }
+  if (plan.first_active == plan.steps) plan.first_active_run = narrow(static_cast<Index>(plan.runs.size()));
 }
 
 }  // namespace

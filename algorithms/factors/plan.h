@@ -4,13 +4,14 @@
 // What     Minimum degree among the joints whose children are all gone (a joint must be eliminated before its parent),
 //          ties: deepest first, then by number of degrees of freedom, so that equal steps stand together.
 //          Joints whose subtree carries no row come first ("phase A"): their part of the factor does not depend on the
-//          damping, and vectors never visit them.
+//          damping, and forces on the rows never visit them.
 // Ground   is never a node: it has no acceleration, so it couples nothing.
 // Cost     O((N + fill) log N), once.
 // Source   paper, Algorithm 4, lines 16–20 (neighbour sets) and the elimination order S^E.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "algorithms/problem/problem.h"
@@ -48,7 +49,8 @@ struct Plan {
   /// Per step the blocks of all pairs of Q_i, (0,1) (0,2) … (1,2) …; a block's columns belong to the earlier step.
   std::vector<int> first_pair;
   std::vector<int> pairs;
-  std::vector<Run> runs;           ///< over the active steps
+  std::vector<Run> runs;           ///< over all steps; none reaches from phase A into the active steps
+  int first_active_run = 0;
 
   /// Initial couplings: for each link constraint the blocks of the pairs of its links, (0,1) (0,2) … (1,2) ….
   std::vector<int> first_constraint_pair;
@@ -58,12 +60,15 @@ struct Plan {
   [[nodiscard]] bool simple(int i) const {
     return first_member[i + 1] - first_member[i] == 1 && parent[i] >= 0 && members[first_member[i]].block < 0;
   }
+  using Runs = std::span<const Run>;
+  [[nodiscard]] Runs all_runs() const { return runs; }
+  [[nodiscard]] Runs active_runs() const { return Runs(runs).subspan(static_cast<std::size_t>(first_active_run)); }
   [[nodiscard]] int active() const { return steps - first_active; }
   [[nodiscard]] int active_columns() const { return first_column[steps] - first_column[first_active]; }
   [[nodiscard]] Index bytes() const;
 };
 
-/// Whether vectors visit every joint, or only those with rows in their subtree.
+/// Which joints are active: those with rows in their subtree, or every one.
 enum class Branches : std::uint8_t { with_rows, all };
 [[nodiscard]] Plan make_plan(const Structure& structure, Matrix matrix, Branches branches = Branches::with_rows);
 

@@ -12,7 +12,7 @@ template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> 
   weights_.analyze(*structure_);
   mass_ = mass;
   if (mass_ == Mass::factored_elsewhere) return;
-  plan_M_ = make_plan(*structure_, Matrix::M, Branches::all);
+  plan_M_ = make_plan(*structure_, Matrix::M);
   factor_M_.analyze(*structure_, plan_M_);
 }
 
@@ -21,6 +21,11 @@ template <class T> void Refinement<T>::update(const Problem<T>& problem) {
   if (mass_ == Mass::factored_elsewhere) return;
   factored_M_ = factor_M_.start(problem);
   M_is_current_ = false;
+}
+
+template <class T> void Refinement<T>::update_rows(const Problem<T>& problem) {
+  residual_.update_rows(problem);
+  if (mass_ == Mass::factored_here) factor_M_.move_rows(problem);
 }
 
 template <class T> Report Refinement<T>::factor_mass() const {
@@ -48,15 +53,12 @@ template <class T> void Refinement<T>::update_damping(const Damping<T>& damping)
 }
 
 namespace {
-// Where products of two floats may leave the range of float.
-template <class T> using Products = std::conditional_t<std::is_same_v<T, float>, double, T>;
-
 // xᵀ y
-template <class T> Products<T> inner(const T* x, const T* y, Index n) {
-  if constexpr (std::is_same_v<Products<T>, T>) return dot(x, y, n);
+template <class Products, class T> Products inner(const T* x, const T* y, Index n) {
+  if constexpr (std::is_same_v<Products, T>) return dot(x, y, n);
   else {
-    Products<T> sum(0);
-    for (Index k = 0; k < n; ++k) sum += Products<T>(x[k]) * Products<T>(y[k]);
+    Products sum(0);
+    for (Index k = 0; k < n; ++k) sum += Products(x[k]) * Products(y[k]);
     return sum;
   }
 }
@@ -72,13 +74,25 @@ double contraction(double now, double before) { return now < before ? now / befo
 double relative(double x, double to) { return x == 0 ? 0 : x / to; }
 }  // namespace
 
+template <class T> typename Refinement<T>::Products Refinement<T>::energy_of(const Buffers& b) {
+  Products sum = inner<Products>(b.f, b.a, b.m);
+  for (Index c = 0; c < b.n && b.r1_0 != nullptr; ++c) sum += Products(narrow<T>(b.nu[c])) * Products(b.r1_0[c]);
+  return sum;
+}
+
+template <class T> void Refinement<T>::take(Buffers& b, const Asked& asked) {
+  std::copy(asked.nu, asked.nu + b.n, b.nu);
+  std::copy(asked.lambda, asked.lambda + b.m, b.lambda);
+  std::copy(asked.lambda, asked.lambda + b.m, b.f);
+}
+
 // (ν, λ) = (δν, δλ): the first evaluation is the correction from zero. r₁ᵀδν is 0 or not finite.
 template <class T> typename Refinement<T>::Progress Refinement<T>::start(Buffers& b) const {
   std::copy(b.d_nu, b.d_nu + b.n, b.nu);
   std::copy(b.d_lambda, b.d_lambda + b.m, b.lambda);
   std::copy(b.d_lambda, b.d_lambda + b.m, b.f);
   Progress now;
-  now.size = std::isfinite(magnitude(Products<T>(inner(b.r1, b.d_nu, b.n) + inner(b.a, b.f, b.m)))) ? 1 : std::numeric_limits<double>::quiet_NaN();
+  now.size = std::isfinite(magnitude(Products(inner<Products>(b.r1, b.d_nu, b.n) + inner<Products>(b.a, b.f, b.m)))) ? 1 : std::numeric_limits<double>::quiet_NaN();
   now.motion = largest_magnitude(b.d_nu, b.n);
   now.force = largest_magnitude(b.d_lambda, b.m);
   return now;
@@ -94,12 +108,12 @@ template <class T> typename Refinement<T>::Progress Refinement<T>::advance(Buffe
   if (invertible_.ok()) weights_.multiply(b.r2, b.scratch);
   else std::copy(b.d_lambda, b.d_lambda + b.m, b.scratch);
   const double largest = largest_magnitude(b.f, b.m), at_stake = largest_magnitude(b.scratch, b.m);  // max|λ|, max|R r₂|
-  const Products<T> energy = inner(b.r1, b.d_nu, b.n) + inner(b.r2, b.d_lambda, b.m), total = inner(b.f, b.a, b.m);
+  const Products gained_energy = inner<Products>(b.r1, b.d_nu, b.n) + inner<Products>(b.r2, b.d_lambda, b.m), total = energy_of(b);
 
   Progress now;
   now.motion = largest_magnitude(b.d_nu, b.n);
   now.force = largest_magnitude(b.d_lambda, b.m);
-  now.energy = relative(std::sqrt(magnitude(energy)), std::sqrt(magnitude(total)));
+  now.energy = relative(std::sqrt(magnitude(gained_energy)), std::sqrt(magnitude(total)));
   now.size = larger(relative(now.force, largest), now.energy);
   const double rho = larger(larger(contraction(now.motion, before.motion), contraction(now.force, before.force)),
                             contraction(now.energy, before.energy));
@@ -125,14 +139,14 @@ template <class T> std::optional<T> Refinement<T>::soft_rows(Buffers& b) const {
   return dot(b.d_lambda, b.scratch, b.m);
 }
 
-// B relative to ‖λ‖_A = √(λᵀa) of the solution, of which only s = λᵀa of the iterate is known: ‖λ‖_A (‖λ‖_A + B) ≥ s.
+// B relative to the energy norm e of the solution, of which only s = νᵀr₁⁰ + λᵀr₂⁰ of the iterate is known: e (e + B) ≥ s.
 template <class T>
 typename Refinement<T>::Certificate Refinement<T>::bound(const Buffers& b, const Square& motion, const Square& rows) const {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const auto root = [](const Square& x) { return std::ldexp(std::sqrt(magnitude(x.value)), x.exponent); };
   const double of_motion = root(motion), of_rows = root(rows);
   const double bound = invertible_.ok() ? std::hypot(of_motion, of_rows) : of_motion + of_rows;
-  const double s = static_cast<double>(inner(b.f, b.a, b.m)), largest = largest_magnitude(b.f, b.m);
+  const double s = static_cast<double>(energy_of(b)), largest = largest_magnitude(b.f, b.m);
   if (bound > 0 && !(s > 0)) return {infinite, infinite};
   const double at_rows = invertible_.ok() ? largest_magnitude(b.r2, b.m) : 0;
   if ((of_motion == 0 && largest_magnitude(b.r1, b.n) > 0) || (of_rows == 0 && at_rows > 0))  // lost
@@ -142,7 +156,7 @@ typename Refinement<T>::Certificate Refinement<T>::bound(const Buffers& b, const
 }
 
 template <class T> Index Refinement<T>::workspace(Index of_correction) const {
-  return Buffers::size(*structure_) + std::max({mass_ == Mass::factored_here ? factor_M_.workspace() : 0, residual_.workspace(), of_correction});
+  return Buffers::size(*structure_) + std::max({mass_ == Mass::factored_here ? factor_M_.solve_workspace() : 0, residual_.workspace(), of_correction});
 }
 
 template <class T> Index Refinement<T>::bytes() const {

@@ -5,7 +5,7 @@
 //          ν += δν, λ += δλ with the residual (r₁, r₂) of kkt_residual.h, until nothing is left to gain. Any solve of (K)
 //          serves: the inversion lemma, a QR factor, a dense one, one in float, one at another damping.
 // How      ν and λ are carried as Wide<T>. A correction measures the error before it: in the energy norm
-//            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to λᵀa,
+//            ‖δν‖²_M + ‖δλ‖²_{R⁻¹} = r₁ᵀδν + r₂ᵀδλ,   relative to νᵀr₁⁰ + λᵀr₂⁰ of the right-hand side asked for,
 //          and per row, relative to the largest force. Its own relative error ρ is about how much smaller it is than the
 //          correction before it (the largest of the ratios of ν, λ and energy); of δλ = R (r₂ − J δν) it leaves ρ |R r₂|,
 //          and all that further corrections would bring is ρ/(1 − ρ) of it. Steps end when that is below eps; where rows are
@@ -13,12 +13,12 @@
 //          largest force may hide the rows that converge slowly: it ends the steps only when it is itself below 4 eps, or when
 //          the certificate below leaves no row more than eps of the largest force, √R_rr B ≤ eps max|λ|. Those of a patient correction, which is fast in most
 //          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
-//          are divergence: not_converged. So is the last step allowed, unless no certificate is above 8 eps, and the last correction
+//          are divergence: not_converged. So is the last step allowed, unless neither certificate nor last correction is above 8 eps,
 //          or what the certificate leaves a row, √R_rr B / max|λ|, is below 4 eps: then no step would add a digit.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
 //          diag(M, R⁻¹)), by one backward sweep of the factor of M; hence |δλ_r| ≤ √R_rr B, and ‖δλ‖_A ≤ B for λ alone
-//          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(λᵀa), plus 2 eps for
-//          rounding. The solution's energy is at least e with e (e + B) = s, s = λᵀa of the iterate: so, with t = B/√s,
+//          (A δλ = r₂ − J M⁻¹r₁). error_bound is B relative to the energy norm of the solution, √(νᵀr₁⁰ + λᵀr₂⁰), plus 2 eps for
+//          rounding. The solution's energy is at least e with e (e + B) = s, s that of the iterate: so, with t = B/√s,
 //          error_bound = t (t + √(t² + 4)) / 2, infinite where s ≤ 0. r₁ and r₂ are scaled by powers of two, each to a largest
 //          entry of about one, before they are squared; where even so a square is lost, error_bound is infinite.
 //          An answer whose bound is above what was wanted, or above √eps when all digits were, is not_converged.
@@ -54,6 +54,8 @@ template <class T> class Refinement {
 
   void analyze(std::shared_ptr<const Structure> structure, Mass mass = Mass::factored_here);
   void update(const Problem<T>& problem);
+  /// Rows that moved; the factor of M is kept.
+  void update_rows(const Problem<T>& problem);
   void update_damping(const Damping<T>& damping);
 
   /// What update was given; `to` has the structure and the sizes.
@@ -64,7 +66,7 @@ template <class T> class Refinement {
   /// Factors M where that is done here, once after an update: at the first call, which solve makes when a certificate is asked
   /// for. Threads wait for the one that does it. Report: lost_pivot.
   [[nodiscard]] Report factor_mass() const;
-  /// The factor of M, every joint active, after factor_mass.
+  /// The factor of M, after factor_mass.
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
   struct NoBound {
@@ -74,22 +76,30 @@ template <class T> class Refinement {
     int most;
     bool patient = false;
   };
-  /// f = λ of (ν, λ) with r₁ = 0, r₂ = 0 for the acceleration a. Shapes m. `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
+  /// What is asked: (K) with these right-hand sides, r1 (n, nullptr: zero) and r2 (m), from the pair given, or from zero.
+  struct Asked {
+    const T *r1 = nullptr, *r2 = nullptr;
+    const T *nu = nullptr, *lambda = nullptr;  // both, or none
+  };
+  static Asked asked(const T* r1, const T* r2, const T* nu, const T* lambda, bool from_these) {
+    return {r1, r2, from_these ? nu : nullptr, from_these ? lambda : nullptr};
+  }
+  /// f = λ of the (ν, λ) asked for (m). `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
   /// accuracy was not reached, with the iterate it came to; not_finite; lost_pivot of M. `at_rows(r2, scratch)`, asked where R⁻¹
   /// has a zero, is a bound on r₂ᵀA⁻¹r₂, or none; scratch is m.
   template <class Correct, class AtRows = NoBound>
-  Report solve(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr,
+  Report solve(const Asked& asked, T* f, Accuracy wanted, Steps steps, const Correct& correct, T* work, T* nu = nullptr,
                const AtRows& at_rows = {}) const {
     if (std::isfinite(wanted.error))
       if (const Report factored = factor_mass(); !factored.ok()) return factored;
     const auto energy = [this](const T* tau, T* rest) { return factor_M_.energy(tau, rest); };
-    return solve_with(a, f, wanted, steps, correct, energy, work, nu, at_rows);
+    return solve_with(asked, f, wanted, steps, correct, energy, work, nu, at_rows);
   }
   /// The same with `energy(τ, work)` = τᵀM⁻¹τ.
   template <class Correct, class Energy, class AtRows = NoBound>
-  Report solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
+  Report solve_with(const Asked& asked, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
                     T* nu = nullptr, const AtRows& at_rows = {}) const;
 
   /// r₁ = Jᵀλ − M ν and r₂ = a − J ν − R⁻¹λ in T. Shapes n, m, m, n, m; `work` as for solve without its vectors.
@@ -101,6 +111,8 @@ template <class T> class Refinement {
 
  private:
   struct Buffers;
+  /// Where products of two floats may leave the range of float.
+  using Products = std::conditional_t<std::is_same_v<T, float>, double, T>;
   struct Progress {
     double size = 1;      // of the last correction, relative: the error before it
     double expected = 1;  // of the next one: the error now
@@ -117,15 +129,20 @@ template <class T> class Refinement {
   };
   /// Nothing left to gain.
   static bool at_rounding(const Report& r, const Certificate& c) {
-    const bool correction = r.error_estimate >= 0 && r.error_estimate <= 4 * unit_roundoff<T>;
+    const bool correction = r.error_estimate >= 0 && r.error_estimate <= 8 * unit_roundoff<T>;
     return r.error_bound <= 8 * unit_roundoff<T> && (correction || c.at_a_row <= 4 * unit_roundoff<T>);
   }
   /// Whether ρ, or what does not depend on it, was seen in all rows.
   static bool shown(const Report& r, const Progress& now, const Certificate& c) {
     return r.iterations != 1 || now.size <= 4 * unit_roundoff<T> || c.at_a_row <= unit_roundoff<T>;
   }
+  /// νᵀr₁⁰ + λᵀr₂⁰ of the iterate
+  static Products energy_of(const Buffers& b);
   Progress start(Buffers& b) const;
   Progress advance(Buffers& b, const Progress& before) const;
+  /// The pair given becomes the iterate.
+  static void take(Buffers& b, const Asked& asked);
+  static Report finish(const Buffers& b, Report report, Accuracy wanted, T* f, T* nu);
   /// Overwrites the correction.
   template <class Energy, class AtRows> Certificate certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
     const int of_r1 = scale(b.r1, b.d_nu, b.n), of_r2 = scale(b.r2, b.d_lambda, b.m);
@@ -159,11 +176,12 @@ template <class T> struct Refinement<T>::Buffers {
   static constexpr Index wide = static_cast<Index>(sizeof(W) / sizeof(T));
   Index n, m;
   W *nu, *lambda;
-  T *a, *f;  // the right-hand side; λ rounded to T
+  const T* r1_0;  // the right-hand sides
+  T *a, *f;       // … and λ rounded to T
   T *d_nu, *r1, *d_lambda, *r2, *scratch;
   T* rest;
 
-  Buffers(const Structure& s, const T* rhs, T* work) : n(s.dofs()), m(s.rows) {
+  Buffers(const Structure& s, const Asked& asked, T* work) : n(s.dofs()), m(s.rows), r1_0(asked.r1) {
     nu = reinterpret_cast<W*>(work);
     lambda = reinterpret_cast<W*>(work += wide * padded(n));
     T* const narrow_ones = work += wide * padded(m);
@@ -171,32 +189,47 @@ template <class T> struct Refinement<T>::Buffers {
     for (T** x : {&a, &f, &d_lambda, &r2, &scratch}) *x = work, work += padded(m);
     rest = work;
     std::fill(narrow_ones, rest, T(0));
-    std::copy(rhs, rhs + m, a);
-    std::copy(rhs, rhs + m, r2);
+    if (r1_0 != nullptr) std::copy(r1_0, r1_0 + n, r1);
+    std::copy(asked.r2, asked.r2 + m, a);
+    std::copy(asked.r2, asked.r2 + m, r2);
   }
   static Index size(const Structure& s) { return (wide + 2) * padded(s.dofs()) + (wide + 5) * padded(s.rows); }
 };
 
 template <class T>
 template <class Correct, class Energy, class AtRows>
-Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
+Report Refinement<T>::solve_with(const Asked& asked, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
                                  T* work, T* nu, const AtRows& at_rows) const {
-  Buffers b(*structure_, a, work);
-  correct(nullptr, b.r2, b.d_nu, b.d_lambda, b.rest);
-  Progress now = start(b), before = now;
+  Buffers b(*structure_, asked, work);
+  residual_.damping().switch_off(b.a);
+  residual_.damping().switch_off(b.r2);
   Report report;
+  Progress now;
+  if (asked.nu != nullptr) {  // what the pair given leaves
+    take(b, asked);
+    residual_.damping().switch_off(b.lambda);
+    residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
+    if (wanted.error > 0 && std::isfinite(wanted.error)) report.error_bound = certify(b, energy, at_rows).relative;
+    if (report.error_bound >= 0 && report.error_bound <= wanted.error) return finish(b, report, wanted, f, nu);
+    correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
+    now = advance(b, now);
+  } else {
+    correct(b.r1_0, b.r2, b.d_nu, b.d_lambda, b.rest);
+    now = start(b);
+  }
+  Progress before = now;
   while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
     const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
     // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
     if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
-    else residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
+    else residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
     Certificate certificate;
     if (done || wanted.error > 0) {
       certificate = certify(b, energy, at_rows);
       report.error_bound = certificate.relative;
     }
     if ((done && shown(report, now, certificate)) || enough(report, now, wanted.error)) break;
-    if (done) residual_.template evaluate<W>(b.nu, b.lambda, nullptr, b.a, b.r1, b.r2, b.rest);
+    if (done) residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
     const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
     if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
       certificate = certify(b, energy, at_rows);
@@ -211,6 +244,10 @@ Report Refinement<T>::solve_with(const T* a, T* f, Accuracy wanted, Steps steps,
     report.error_estimate = now.size;
   }
   if (!std::isfinite(now.size)) report.status = Status::not_finite;
+  return finish(b, report, wanted, f, nu);
+}
+
+template <class T> Report Refinement<T>::finish(const Buffers& b, Report report, Accuracy wanted, T* f, T* nu) {
   if (report.ok() && report.error_bound > (wanted.error > 0 ? wanted.error : std::sqrt(unit_roundoff<T>))) report.status = Status::not_converged;
   std::copy(b.f, b.f + b.m, f);
   if (nu != nullptr)

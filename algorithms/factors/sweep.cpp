@@ -1,4 +1,4 @@
-// The two sweeps of Factor: y = J M_R⁻¹ Jᵀ x. Active steps only.
+// The two sweeps of Factor: y = J M_R⁻¹ Jᵀ x over the active steps; ν = M_R⁻¹(Jᵀx + τ) over all.
 #include "algorithms/factors/factor.h"
 #include "algorithms/kit/instantiate.h"
 
@@ -19,9 +19,9 @@ template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>
 }
 
 // u = τ + Sᵀf; f_π += f_i; f_j −= W_j D⁻¹ u; u ← D⁻¹u      (Alg. 2, lines 2–6; Alg. 4, lines 13, 23, 31)
-template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) const {
+template <class T> template <class V> void Factor<T>::backward(Plan::Runs runs, Six<V>* f, V* u) const {
   const int a = plan_->first_active, column0 = plan_->first_column[a];
-  for (const Plan::Run& run : plan_->runs) {
+  for (const Plan::Run& run : runs) {
     if (run.chain) {
       Six<V> fi = f[run.begin - a];
       for (int i = run.begin; i < run.end; ++i) {
@@ -64,9 +64,9 @@ template <class T> template <class V> void Factor<T>::backward(Six<V>* f, V* u) 
 }
 
 // ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j; a_i = a_π + S_i ν      (Alg. 4, lines 33–37); a takes the place of f
-template <class T> template <class V> void Factor<T>::forward(Six<V>* f, V* u) const {
+template <class T> template <class V> void Factor<T>::forward(Plan::Runs runs, Six<V>* f, V* u) const {
   const int a = plan_->first_active, column0 = plan_->first_column[a];
-  for (auto run = plan_->runs.rbegin(); run != plan_->runs.rend(); ++run) {
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
     if (run->simple && run->dofs == 1) {
       Six<V> ai = f[plan_->parent[run->end - 1] - a];
       for (int i = run->end; i-- > run->begin;) {
@@ -107,10 +107,21 @@ template <class T> template <class V> void Factor<T>::project(const V* x, V* y, 
   Six<V>* const f = forces(work);
   V* const u = work + plan_->active() * (sizeof(Six<V>) / sizeof(V));
   scatter(x, f, u);
-  backward(f, u);
-  forward(f, u);
+  backward(plan_->active_runs(), f, u);
+  forward(plan_->active_runs(), f, u);
   gather(f, u, y);
 }
+
+template <class T> struct Factor<T>::Whole {
+  Six<T>*const f, *const active_f;
+  T *const u, *const active_u;
+  Whole(const Plan& plan, T* work)
+      : f(forces(work)), active_f(f + plan.first_active), u(work + plan.steps * static_cast<Index>(sizeof(Six<T>) / sizeof(T))),
+        active_u(u + plan.first_column[plan.first_active]) {
+    std::fill(f, active_f, Six<T>::zero());
+    std::fill(u, active_u, T(0));
+  }
+};
 
 // u += Eᵀτ
 template <class T> void Factor<T>::add_torques(const T* tau, T* u) const {
@@ -140,25 +151,24 @@ template <class T> void Factor<T>::velocities(const T* u, T* nu) const {
 }
 
 template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
-  Six<T>* const f = forces(work);
-  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
-  scatter(x, f, u);
-  if (tau != nullptr) add_torques(tau, u);
-  backward(f, u);
-  forward(f, u);
-  gather(f, u, y);
-  velocities(u, nu);
+  const Whole all(*plan_, work);
+  scatter(x, all.active_f, all.active_u);
+  if (tau != nullptr) add_torques(tau, all.u);
+  backward(tau != nullptr ? plan_->all_runs() : plan_->active_runs(), all.active_f, all.active_u);
+  forward(plan_->all_runs(), all.active_f, all.active_u);
+  gather(all.active_f, all.active_u, y);
+  velocities(all.u, nu);
 }
 
 template <class T> T Factor<T>::energy(const T* tau, T* work) const {
-  Six<T>* const f = forces(work);
-  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
-  std::fill(f, f + plan_->active(), Six<T>::zero());
-  std::fill(u, u + plan_->active_columns(), T(0));
-  add_torques(tau, u);
-  backward(f, u);
+  const Whole all(*plan_, work);
+  const int columns = plan_->first_column[plan_->steps];
+  std::fill(all.active_f, all.f + plan_->steps, Six<T>::zero());
+  std::fill(all.active_u, all.u + columns, T(0));
+  add_torques(tau, all.u);
+  backward(plan_->all_runs(), all.active_f, all.active_u);
   T sum(0);  // Σ u² / D
-  for (int c = 0; c < plan_->active_columns(); ++c) sum += u[c] * u[c] / d_inverse_[c];
+  for (int c = 0; c < columns; ++c) sum += all.u[c] * all.u[c] / d_inverse_[c];
   return sum;
 }
 
@@ -166,7 +176,7 @@ template <class T> void Factor<T>::half(const T* x, T* z, T* work) const {
   Six<T>* const f = forces(work);
   T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
   scatter(x, f, u);
-  backward(f, u);
+  backward(plan_->active_runs(), f, u);
   std::copy(u, u + plan_->active_columns(), z);
 }
 
@@ -198,7 +208,8 @@ template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const 
   for (int i = plan_->steps; i-- > 0;) {
     const int n = plan_->first_column[i + 1] - plan_->first_column[i];
     const Matrix6<T> V = mobility(i, omega);
-    for (int j = first_joint_rows_[i]; j < first_joint_rows_[i + 1]; ++j)
+    const int step = i - plan_->first_active;
+    for (int j = step < 0 ? 0 : first_joint_rows_[step]; step >= 0 && j < first_joint_rows_[step + 1]; ++j)
       for (Index r = 0; r < joint_rows_[j].rows; ++r) {
         const T* const k = joint_k_.data() + joint_rows_[j].first + r * n;
         T& of_row = d[joint_rows_[j].row + r] = T(0);
@@ -233,8 +244,8 @@ DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 #ifdef DELASSUS_EXACT
 DELASSUS_INSTANTIATE(Stochastic)
 template void Factor<Stochastic>::scatter(const Stochastic*, Six<Stochastic>*, Stochastic*) const;
-template void Factor<Stochastic>::backward(Six<Stochastic>*, Stochastic*) const;
-template void Factor<Stochastic>::forward(Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::backward(Plan::Runs, Six<Stochastic>*, Stochastic*) const;
+template void Factor<Stochastic>::forward(Plan::Runs, Six<Stochastic>*, Stochastic*) const;
 template void Factor<Stochastic>::gather(const Six<Stochastic>*, const Stochastic*, Stochastic*) const;
 #else
 template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;

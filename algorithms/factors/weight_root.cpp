@@ -31,11 +31,17 @@ template <class T> Report WeightRoot<T>::assign(const Damping<T>& damping) {
     T* const L = lower_.data() + lower;
     if (block != nullptr) {
       std::copy_n(block, count * count, L);
+      for (const Index r : damping_.off())
+        if (r >= first && r < first + count) L[(r - first) * (count + 1)] = T(1);
       const Index lost = ldlt_factor(L, count, count);
       if (lost >= 0) return {Status::zero_damping, first + lost};
     }
     for (Index r = 0; r < count; ++r) {
       const T d = block != nullptr ? L[r * count + r] : damping_.diagonal(first + r);
+      if (std::binary_search(damping_.off().begin(), damping_.off().end(), first + r)) {
+        root_[first + r] = T(0);
+        continue;
+      }
       if (!ScalarTraits<T>::usable_pivot(d)) return {Status::zero_damping, first + r};
       root_[first + r] = T(1) / T(sqrt(d));
     }

@@ -1,6 +1,7 @@
 // W with Wᵀ W = R, from R⁻¹: what turns the damping into rows of a least-squares problem.
 //
 // Formula  R⁻¹ = L D Lᵀ per constraint (L = 1 where the damping is diagonal);  W = D^-½ L⁻¹.
+// Off      a row with R⁻¹ = ∞ is a zero row of W.
 // Singular zero_damping names the first row whose damping, or whose pivot within a block, is not positive.
 // Cost     one square root per row, m_e³/3 per block; no allocation after analyze.
 #pragma once

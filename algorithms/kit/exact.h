@@ -42,7 +42,7 @@ struct Rational {
   friend bool operator>=(const Rational& a, const Rational& b) { return a.v >= b.v; }
 };
 inline Rational abs(const Rational& x) { return Rational(mpq_class(::abs(x.v))); }
-inline bool isfinite(const Rational&) { return true; }
+inline bool isfinite(const Rational& x) { return sgn(x.v.get_den()) != 0; }
 
 /// The integers modulo p = 2⁶¹ − 1. Doubles are dyadic rationals and 2 is invertible, so the map from doubles is a ring
 /// homomorphism: an identity between rational functions that holds for the doubles holds here. A wrong identity of degree
@@ -85,17 +85,25 @@ struct PrimeField {
   friend PrimeField operator-(const PrimeField& a) { return from(a.v == 0 ? 0 : p - a.v); }
   friend bool operator==(const PrimeField& a, const PrimeField& b) { return a.v == b.v; }
 };
-inline bool isfinite(const PrimeField&) { return true; }
+inline bool isfinite(const PrimeField& x) { return x.v != PrimeField::p; }
 
 template <> struct ScalarTraits<Rational> {
   static constexpr bool exact = true, ordered = true;
   static bool usable_pivot(const Rational& d) { return d > Rational(0); }
   static Rational nan() { return {}; }
+  static Rational infinity() {  // 1/0, which GMP's arithmetic refuses
+    Rational x(1);
+    x.v.get_den() = 0;
+    return x;
+  }
+  static bool is_infinite(const Rational& x) { return !isfinite(x); }
 };
 template <> struct ScalarTraits<PrimeField> {
   static constexpr bool exact = true, ordered = false;
   static bool usable_pivot(const PrimeField& d) { return d.v != 0; }
   static PrimeField nan() { return {}; }
+  static PrimeField infinity() { return PrimeField::from(PrimeField::p); }
+  static bool is_infinite(const PrimeField& x) { return !isfinite(x); }
 };
 
 }  // namespace delassus

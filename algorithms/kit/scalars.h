@@ -22,6 +22,9 @@ template <class T> struct ScalarTraits {
   static constexpr bool exact = false, ordered = true;
   static bool usable_pivot(const T& d) { using std::isfinite; return d > T(0) && isfinite(d); }
   static T nan() { return T(std::numeric_limits<double>::quiet_NaN()); }  ///< marks a result that must not be used
+  /// A mark that no arithmetic ever meets: R⁻¹ of a row that is switched off.
+  static T infinity() { return T(std::numeric_limits<double>::infinity()); }
+  static bool is_infinite(const T& x) { using std::isfinite; return x > T(0) && !isfinite(x); }
 };
 
 /// Unit roundoff of a scalar; 0 where it is exact.

@@ -17,6 +17,11 @@ template <class T> Report AbaSweep<T>::do_update(const Problem<T>& problem, cons
   return factored_;
 }
 
+template <class T> Report AbaSweep<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  factor_.move_rows(problem);
+  return do_update_damping(damping);
+}
+
 template <class T> Report AbaSweep<T>::do_update_damping(const Damping<T>& damping) {
   damping_.assign(damping);
   return factored_;
@@ -27,9 +32,16 @@ template <class T> Report AbaSweep<T>::do_apply(ConstRef<T> f, Ref<T> a, T* work
   if (!factored_.ok()) return factored_;
   for_columns<T>(f, a, workspace, [&](const auto* x, auto* y, auto* work) {
     auto* const damped = work + factor_.workspace();
-    factor_.project(x, y, work);  // J M⁻¹ Jᵀ f
+    const auto* forces = x;
+    if (!damping_.off().empty()) {  // rows that are off take no part
+      std::copy(x, x + m, damped);
+      damping_.switch_off(damped);
+      forces = damped;
+    }
+    factor_.project(forces, y, work);  // J M⁻¹ Jᵀ f
     damping_.multiply(x, damped);
     for (Index r = 0; r < m; ++r) y[r] += damped[r];
+    damping_.switch_off(y);
   });
   return {};
 }

@@ -20,6 +20,7 @@ template <class T> class AbaSweep : public Operator<T> {
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;

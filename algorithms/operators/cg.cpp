@@ -20,7 +20,7 @@ template <class X, class Y> auto inner(const X& x, const Y& y) {
 }  // namespace
 
 template <class T, class P> void CgWith<T, P>::do_analyze() {
-  plan_ = make_plan(*this->structure(), Matrix::M, plain ? Branches::with_rows : Branches::all);
+  plan_ = make_plan(*this->structure(), Matrix::M);
   factor_.analyze(*this->structure(), plan_);
   damping_.analyze(*this->structure());
   preconditioner_.analyze(*this->structure());
@@ -29,6 +29,15 @@ template <class T, class P> void CgWith<T, P>::do_analyze() {
 template <class T, class P> Report CgWith<T, P>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   factored_ = factor_.start(problem);
   if (factored_.ok()) factored_ = factor_.update_undamped();
+  return take_rows(problem, damping);
+}
+
+template <class T, class P> Report CgWith<T, P>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  factor_.move_rows(problem);
+  return take_rows(problem, damping);
+}
+
+template <class T, class P> Report CgWith<T, P>::take_rows(const Problem<T>& problem, const Damping<T>& damping) {
   undamped_ = factored_.ok() ? preconditioner_.update(problem, factor_) : factored_;
   return do_update_damping(damping);
 }
@@ -42,9 +51,12 @@ template <class T, class P> Report CgWith<T, P>::do_update_damping(const Damping
 // y = (J M⁻¹ Jᵀ + R⁻¹) x
 template <class T, class P> void CgWith<T, P>::multiply(const T* x, T* y, T* workspace) const {
   T* const damped = workspace + factor_.workspace();
-  factor_.project(x, y, workspace);
+  std::copy(x, x + this->size(), damped);
+  damping_.switch_off(damped);
+  factor_.project(damped, y, workspace);
   damping_.multiply(x, damped);
   for (Index r = 0; r < this->size(); ++r) y[r] += damped[r];
+  damping_.switch_off(y);
 }
 
 template <class T, class P> Report CgWith<T, P>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {
@@ -59,6 +71,25 @@ template <class T, class P> void CgWith<T, P>::precondition(const T* r, T* z, T*
 }
 
 template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return iterate(a, f, wanted, Start::zero, workspace);
+}
+
+// A λ = r₂ − J M⁻¹ r₁;  ν = M⁻¹(r₁ + Jᵀλ)
+template <class T, class P>
+Report CgWith<T, P>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
+  if (!factored_.ok()) return factored_;
+  const Index m = this->size();
+  T *const right = workspace, *const rate = right + padded(m), *const work = rate + padded(m);
+  std::fill(right, right + m, T(0));
+  factor_.solve(right, r1, rate, nu, work);
+  for (Index r = 0; r < m; ++r) right[r] = r2[r] - rate[r];
+  const Report report = iterate(right, lambda, wanted, start, work);
+  factor_.solve(lambda, r1, rate, nu, work);
+  return report;
+}
+
+template <class T, class P>
+Report CgWith<T, P>::iterate(const T* a, T* f, Accuracy wanted, Start start, T* workspace) const {
   if (!factored_.ok()) return factored_;
   if (!preconditioned_.ok()) return preconditioned_;
   const Index m = this->size();
@@ -66,19 +97,25 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
   T* const inner_work = workspace + (plain ? 3 : 4) * padded(m);
   ConstMap<T> b(a, m);
   Map<T> x(f, m), r(workspace, m), p(workspace + padded(m), m), q(workspace + 2 * padded(m), m);
-  const T eps_squared = T(unit_roundoff<T>) * T(unit_roundoff<T>), bb = inner(b, b);
+  r = b;
+  damping_.switch_off(r.data());
+  const T eps_squared = T(unit_roundoff<T>) * T(unit_roundoff<T>), bb = inner(r, r);
   const double attainable = ScalarTraits<T>::exact ? 0.0 : 30 * unit_roundoff<T> * static_cast<double>(m);
   T largest = T(0);  // largest Rayleigh quotient seen: a lower estimate of λmax(A)
   Report report;
-  x.setZero();
-  r = b;
-  if (bb == T(0) && std::any_of(a, a + m, [](const T& e) { return !(e == T(0)); })) {  // its square underflows
+  if (start == Start::zero) x.setZero();
+  damping_.switch_off(f);
+  if (bb == T(0) && std::any_of(r.data(), r.data() + m, [](const T& e) { return !(e == T(0)); })) {  // its square underflows
     report.status = Status::not_converged;
     return report;
   }
   const Index most = 10 * m + 50, limit = std::min<Index>(most, wanted.steps);
+  if (start == Start::given) {
+    multiply(x.data(), q.data(), inner_work);
+    r -= q;
+  }
   bool cut_short = false;
-  for (int start = 0; start < max_starts && !cut_short; ++start) {
+  for (int round = 0; round < max_starts && !cut_short; ++round) {
     precondition(r.data(), z, inner_work);
     p = Map<T>(z, m);
     T rr = inner(r, r), rz = inner(r, Map<T>(z, m));
@@ -106,6 +143,7 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
     }
     multiply(x.data(), q.data(), inner_work);
     r = b - q;
+    damping_.switch_off(r.data());
     const double residual = std::sqrt(static_cast<double>(inner(r, r)));
     const double scale = static_cast<double>(largest) * std::sqrt(static_cast<double>(inner(x, x))) +
                          std::sqrt(static_cast<double>(bb));
@@ -119,6 +157,10 @@ template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, 
 
 template <class T, class P> Index CgWith<T, P>::do_workspace(Index) const {
   return std::max(factor_.workspace() + padded(this->size()), preconditioner_.workspace()) + 4 * padded(this->size());
+}
+
+template <class T, class P> Index CgWith<T, P>::do_kkt_workspace() const {
+  return 2 * padded(this->size()) + std::max(factor_.solve_workspace(), do_workspace(1));
 }
 
 template <class T, class P> Index CgWith<T, P>::do_bytes() const { return plan_.bytes() + factor_.bytes() + damping_.bytes() + preconditioner_.bytes(); }

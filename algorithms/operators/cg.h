@@ -45,13 +45,19 @@ template <class T, class Preconditioner> class CgWith : public ColumnByColumn<T>
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
+  [[nodiscard]] Index do_kkt_workspace() const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
+  Report take_rows(const Problem<T>& problem, const Damping<T>& damping);
+  /// From x = f where `start` says so.
+  Report iterate(const T* a, T* f, Accuracy wanted, Start start, T* workspace) const;
   void multiply(const T* x, T* y, T* workspace) const;
   void precondition(const T* r, T* z, T* work) const;
 

@@ -55,12 +55,17 @@ template <class T> void DenseCholesky<T>::assemble_J(const Problem<T>& problem) 
 }
 
 template <class T> Report DenseCholesky<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  const Index n = M_.rows(), m = this->size();
+  const Index n = M_.rows();
   assemble_M(problem);
-  assemble_J(problem);
   const Index lost = ldlt_factor(M_.data(), n, n);  // M = L D Lᵀ
   const auto& first = this->structure()->first_dof;
   factored_M_ = lost < 0 ? Report{} : Report{Status::lost_pivot, *std::prev(std::upper_bound(first.begin(), first.end(), n - 1 - lost))};
+  return do_update_rows(problem, damping);
+}
+
+template <class T> Report DenseCholesky<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  const Index n = M_.rows(), m = this->size();
+  assemble_J(problem);
   if (!factored_M_.ok()) return factored_M_;
   for (Index c = 0; c < m; ++c) {
     T* const y = Y_.data() + c * n;
@@ -88,7 +93,12 @@ template <class T> Report DenseCholesky<T>::do_update_damping(const Damping<T>& 
   };
   for (const auto& c : s.link_constraints) add_damping(c.row, c.rows);
   for (const auto& c : s.joint_constraints) add_damping(c.row, c.rows);
+  for (const Index r : damping_.off()) {
+    A_.row(r).setZero();
+    A_.col(r).setZero();
+  }
   factor_ = A_;
+  for (const Index r : damping_.off()) factor_(r, r) = T(1);  // λ_r = 0 of a right-hand side 0
   const Index lost = ldlt_factor(factor_.data(), s.rows, s.rows);
   factored_A_ = lost < 0 ? Report{} : Report{.status = Status::lost_pivot, .where = lost, .of_A = true};
   return {};  // apply is defined all the same; solve reports the lost pivot
@@ -107,7 +117,34 @@ template <class T> Report DenseCholesky<T>::do_solve(ConstRef<T> a, Ref<T> f, T*
   if (!factored_M_.ok()) return factored_M_;
   if (!factored_A_.ok()) return factored_A_;
   f = a;
+  for (Index c = 0; c < f.cols(); ++c) damping_.switch_off(f.data() + c * f.outerStride());
   for (Index c = 0; c < f.cols(); ++c) ldlt_solve(factor_.data(), f.rows(), f.rows(), f.data() + c * f.outerStride());
+  return {};
+}
+
+// z = L⁻¹ r₁;  λ = A⁻¹ (r₂ − (D⁻¹Y)ᵀ z);  ν = L⁻ᵀ D⁻¹ (z + Y λ), degrees of freedom backwards
+template <class T>
+Report DenseCholesky<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy, Start, T* workspace) const {
+  if (!factored_M_.ok()) return factored_M_;
+  if (!factored_A_.ok()) return factored_A_;
+  const Index n = M_.rows(), m = this->size();
+  T* const z = workspace;
+  for (Index k = 0; k < n; ++k) z[k] = r1[n - 1 - k];
+  for (Index k = 0; k < n; ++k)
+    for (Index r = k + 1; r < n; ++r) z[r] -= M_(r, k) * z[k];
+  for (Index r = 0; r < m; ++r) {
+    lambda[r] = r2[r];
+    for (Index k = 0; k < n; ++k) lambda[r] -= DY_(k, r) * z[k];
+  }
+  damping_.switch_off(lambda);
+  ldlt_solve(factor_.data(), m, m, lambda);
+  for (Index r = 0; r < m; ++r)
+    for (Index k = 0; k < n; ++k) z[k] += Y_(k, r) * lambda[r];
+  for (Index k = n; k-- > 0;) {
+    z[k] = z[k] / M_(k, k);
+    for (Index r = k + 1; r < n; ++r) z[k] -= M_(r, k) * z[r];
+  }
+  for (Index k = 0; k < n; ++k) nu[n - 1 - k] = z[k];
   return {};
 }
 

@@ -21,10 +21,13 @@ template <class T> class DenseCholesky : public Operator<T> {
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
   Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index) const override { return 0; }
+  [[nodiscard]] Index do_kkt_workspace() const override { return M_.rows(); }
   [[nodiscard]] Index do_bytes() const override;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace delassus {
 
@@ -18,7 +19,7 @@ template <class T, Dependent policy> void KktEliminationWith<T, policy>::do_anal
   factor_.setZero(m, m);
   unit_.assign(static_cast<std::size_t>(m), T(0));
   column_ = unit_;
-  hard_.assign(unit_.size(), 0);
+  kinds_.assign(unit_.size(), Kind::damped);
   order_.assign(static_cast<std::size_t>(m), 0);
   dependent_.clear();
   dependent_.reserve(static_cast<std::size_t>(m));
@@ -28,6 +29,17 @@ template <class T, Dependent policy> void KktEliminationWith<T, policy>::do_anal
 template <class T, Dependent policy>
 Report KktEliminationWith<T, policy>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   refinement_.update(problem);
+  return take_rows(problem, damping);
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  refinement_.update_rows(problem);
+  return take_rows(problem, damping);
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::take_rows(const Problem<T>& problem, const Damping<T>& damping) {
   undamped_ = refinement_.factor_mass();
   if (undamped_.ok())
     for (Index c = 0; c < A0_.cols(); ++c) {  // J M⁻¹Jᵀ e_c
@@ -53,15 +65,20 @@ Report KktEliminationWith<T, policy>::do_update_damping(const Damping<T>& dampin
     damping_.multiply(unit_.data(), column_.data());
     unit_[c] = T(0);
     for (Index r = 0; r < m; ++r) A_(r, c) += column_[r];
-    hard_[c] = column_[c] == T(0);
+    kinds_[c] = column_[c] == T(0) ? Kind::hard : Kind::damped;
   }
-  const bool any_hard = std::find(hard_.begin(), hard_.end(), 1) != hard_.end();
+  for (const Index r : damping_.off()) {
+    A_.row(r).setZero();
+    A_.col(r).setZero();
+    kinds_[r] = Kind::off;
+  }
+  const bool any_hard = std::find(kinds_.begin(), kinds_.end(), Kind::hard) != kinds_.end();
   rank_ = any_hard ? factor_by_rows() : factor_by_pivots();
-  dependent_.assign(order_.begin() + rank_, order_.end());
+  std::copy_if(order_.begin() + rank_, order_.end(), std::back_inserter(dependent_), [this](Index r) { return kinds_[r] != Kind::off; });
   std::sort(dependent_.begin(), dependent_.end());
   factored_ = {};
   for (const Index r : dependent_)  // a damped row never depends: this arithmetic cannot tell
-    if (factored_.ok() && (policy == Dependent::refused || !hard_[r])) factored_ = {.status = Status::lost_pivot, .where = r, .of_A = true};
+    if (factored_.ok() && (policy == Dependent::refused || kinds_[r] == Kind::damped)) factored_ = {.status = Status::lost_pivot, .where = r, .of_A = true};
   trust_ = trust_in_factor();
   return {};  // apply is defined all the same; solve reports the lost pivot
 }
@@ -104,7 +121,7 @@ std::optional<T> KktEliminationWith<T, policy>::bound_at_rows(const T* r2, T* wo
 }
 
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor_by_rows() {
-  const Index rank = hard_rows_.factor(hard_, damping_, refinement_.factor_M(), order_.data(), sweep_work_->data());
+  const Index rank = hard_rows_.factor(kinds_, damping_, refinement_.factor_M(), order_.data(), sweep_work_->data());
   for (Index k = 0; k < rank; ++k)
     for (Index r = k; r < rank; ++r) factor_(r, k) = hard_rows_.share(order_[r], k);
   return rank;
@@ -113,6 +130,7 @@ template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::factor_by_pivots() {
   for (Index c = 0; c < A_.cols(); ++c) column_[c] = A_(c, c);
   factor_ = A_;
+  for (const Index r : damping_.off()) factor_(r, r) = T(1);  // λ_r = 0 of a right-hand side 0
   return ldlt_pivoted(factor_.data(), A_.cols(), order_.data(), [&](Index row, T& pivot, Index steps) {
     const T least = damping_.diagonal(row);  // 0 for rows of a dense block
     if (least > pivot) pivot = least;
@@ -146,7 +164,7 @@ void KktEliminationWith<T, policy>::solve_multipliers(const T* right, T* lambda,
 template <class T, Dependent policy>
 void KktEliminationWith<T, policy>::solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
   const Index m = this->size();
-  T* const right = work + refinement_.factor_M().workspace();
+  T* const right = work + refinement_.factor_M().solve_workspace();
   T* const rate = right + padded(m);
   std::copy(r2, r2 + m, right);
   if (r1 != nullptr) {
@@ -154,25 +172,28 @@ void KktEliminationWith<T, policy>::solve_kkt(const T* r1, const T* r2, T* d_nu,
     refinement_.factor_M().solve(d_lambda, r1, rate, d_nu, work);
     for (Index r = 0; r < m; ++r) right[r] -= rate[r];
   }
+  damping_.switch_off(right);
   solve_multipliers(right, d_lambda, rate);
   refinement_.factor_M().solve(d_lambda, r1, rate, d_nu, work);
 }
 
 // The rows left out must hold by themselves. ν keeps the digits that a product with A_, itself rounded, does not show.
 template <class T, Dependent policy>
-Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f, const T* nu, T* work) const {
+Report KktEliminationWith<T, policy>::check_dependent(const typename Refinement<T>::Asked& asked, const T* f, const T* nu, T* work) const {
   using std::abs;
   using std::sqrt;
   if (dependent_.empty()) return {};
   const Index m = this->size();
   T *const r1 = work, *const r2 = r1 + padded(this->structure()->dofs());
-  refinement_.residual(nu, f, a, r1, r2, r2 + padded(m));
-  T energy(0);  // of the motion, λᵀA₀λ
+  refinement_.residual(nu, f, asked.r2, r1, r2, r2 + padded(m));
+  T energy(0), of_r1(0);  // of the motion by λ, λᵀA₀λ, and by r₁
   for (Index k = 0; k < m; ++k)
     for (Index r = 0; r < m; ++r) energy += f[r] * A0_(r, k) * f[k];
+  if (asked.r1 != nullptr) of_r1 = refinement_.factor_M().energy(asked.r1, r2 + padded(m));
   for (const Index r : dependent_) {
-    T size = T(abs(a[r]));
-    if constexpr (!ScalarTraits<T>::exact) size += T(sqrt(hard_rows_.size(r))) * T(sqrt(T(abs(energy))));
+    T size = T(abs(asked.r2[r]));
+    if constexpr (!ScalarTraits<T>::exact)
+      size += T(sqrt(hard_rows_.size(r))) * (T(sqrt(T(abs(energy)))) + T(sqrt(T(abs(of_r1)))));
     for (Index k = 0; k < m; ++k) size += T(abs(A_(r, k))) * T(abs(f[k]));
     if (T(abs(r2[r])) > T(30 * unit_roundoff<T> * static_cast<double>(m)) * size) return {Status::inconsistent, r};
   }
@@ -180,31 +201,40 @@ Report KktEliminationWith<T, policy>::check_dependent(const T* a, const T* f, co
 }
 
 template <class T, Dependent policy>
-Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+Report KktEliminationWith<T, policy>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!undamped_.ok()) return undamped_;
   if (!factored_.ok()) return factored_;
-  T *const nu = workspace, *const work = nu + padded(this->structure()->dofs());
   const auto solved = [&](Accuracy accuracy) {
     return refinement_.solve(
-        a, f, accuracy, {max_steps}, [this](auto... args) { solve_kkt(args...); }, work, nu,
+        asked, f, accuracy, {max_steps}, [this](auto... args) { solve_kkt(args...); }, work, nu,
         [this](const T* r2, T* rest) { return bound_at_rows(r2, rest); });
   };
-  Report report = solved(wanted), consistent = check_dependent(a, f, nu, work);
+  Report report = solved(wanted), consistent = check_dependent(asked, f, nu, work);
   if (!consistent.ok() && wanted.error > 0) {  // what is left may be the answer's own error
     report = solved({0, wanted.steps});
-    consistent = check_dependent(a, f, nu, work);
+    consistent = check_dependent(asked, f, nu, work);
   }
   return consistent.ok() ? report : consistent;
 }
 
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return solve_pair({.r2 = a}, f, workspace, wanted, workspace + padded(this->structure()->dofs()));
+}
+
+template <class T, Dependent policy>
+Report KktEliminationWith<T, policy>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
+  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
+}
+
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_workspace(Index) const {
-  return padded(this->structure()->dofs()) + refinement_.workspace(refinement_.factor_M().workspace() + 2 * padded(this->size()));
+  return padded(this->structure()->dofs()) + refinement_.workspace(refinement_.factor_M().solve_workspace() + 2 * padded(this->size()));
 }
 
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_bytes() const {
   return refinement_.bytes() + damping_.bytes() + hard_rows_.bytes() +
          static_cast<Index>(sizeof(T)) * (3 * A_.size() + static_cast<Index>(2 * unit_.size()) + sweep_work_->size()) +
-         static_cast<Index>(sizeof(Index) * 2 * order_.size());
+         static_cast<Index>(sizeof(Index) * 2 * order_.size() + sizeof(Kind) * kinds_.size());
 }
 
 #define DELASSUS_INSTANTIATE(T)                              \

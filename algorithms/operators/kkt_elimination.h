@@ -10,7 +10,7 @@
 //                              range of A is `inconsistent`: what the others leave of a row left out, a_r − J_r ν with the
 //                              refined ν, exceeds 30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of
 //                              hard_rows.h: as far as a row that was called dependent can be off, and the rounding of J_r ν,
-//                              |J_rj||ν_j| ≤ b_rj √(M⁻¹)_jj ‖ν‖_M. Judged at full accuracy, whatever was wanted.
+//                              |J_rj||ν_j| ≤ b_rj √(M⁻¹)_jj ‖ν‖_M; with r₁, √(B_r r₁ᵀM⁻¹r₁) more. Judged at full accuracy, whatever was wanted.
 //            dense_refined     reports lost_pivot.
 // Bound    on r₂ᵀA⁻¹r₂ of the rows not left out, where a row is hard: L D Lᵀ = (Y + E)(Y + E)ᵀ, A = Y Yᵀ, |E_r| ≤ (k + 30) eps s_r,
 //          s_r² = B_r + R⁻¹_rr, k rows. The singular values of Y + E, its rows divided by s_r, are at least 1/√τ with the trace
@@ -41,17 +41,21 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
+  Report take_rows(const Problem<T>& problem, const Damping<T>& damping);
   Index factor_by_rows();
   Index factor_by_pivots();
   void solve_multipliers(const T* right, T* lambda, T* work) const;
-  [[nodiscard]] Report check_dependent(const T* a, const T* f, const T* nu, T* work) const;
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
+  [[nodiscard]] Report check_dependent(const typename Refinement<T>::Asked& asked, const T* f, const T* nu, T* work) const;
   [[nodiscard]] double trust_in_factor();
   [[nodiscard]] std::optional<T> bound_at_rows(const T* r2, T* work) const;
 
@@ -60,7 +64,8 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   HardRows<T> hard_rows_;
   MatrixX<T> A0_, A_, factor_;    // m × m
   std::vector<T> unit_, column_;
-  std::vector<char> hard_;        // per row: R⁻¹_rr = 0
+  using Kind = typename HardRows<T>::Kind;
+  std::vector<Kind> kinds_;       // per row: R⁻¹_rr = 0, ∞ or neither
   std::vector<Index> order_, dependent_;
   Index rank_ = 0;
   double trust_ = 0;              // t; 0: no bound

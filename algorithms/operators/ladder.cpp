@@ -62,8 +62,10 @@ template <class T> void Ladder<T>::keep(const Damping<T>& damping) {
     const Index rows = kept.R_inverse.rows();
     kept.R_inverse.setZero();
     for (Index r = 0; r < rows; ++r) {
-      kept.R_inverse(r, r) = damping.diagonal[kept.row + r];
-      blocks_.diagonal[kept.row + r] = T(0);
+      const T& given_r = damping.diagonal[kept.row + r];
+      const bool off = ScalarTraits<T>::is_infinite(given_r);
+      kept.R_inverse(r, r) = off ? T(0) : given_r;
+      blocks_.diagonal[kept.row + r] = off ? given_r : T(0);
     }
     for (; given != damping.blocks.end() && given->row < kept.row + rows; ++given) {
       const Index at = given->row - kept.row;
@@ -72,7 +74,8 @@ template <class T> void Ladder<T>::keep(const Damping<T>& damping) {
     }
   }
   for (const auto& b : damping.blocks)
-    if (b.R_inverse.rows() == 1) blocks_.diagonal[b.row] += in_wide(b.row) ? T(0) : b.R_inverse(0, 0);
+    if (b.R_inverse.rows() == 1 && !in_wide(b.row) && !ScalarTraits<T>::is_infinite(blocks_.diagonal[b.row]))
+      blocks_.diagonal[b.row] += b.R_inverse(0, 0);
 }
 
 template <class T> bool Ladder<T>::in_wide(Index row) const {
@@ -81,10 +84,18 @@ template <class T> bool Ladder<T>::in_wide(Index row) const {
 }
 
 template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  return taken(damping, [&](Operator<T>& first) { return first.update(problem, *damping_); });
+}
+
+template <class T> Report Ladder<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  return taken(damping, [&](Operator<T>& first) { return first.update_rows(problem, *damping_); });
+}
+
+template <class T> template <class Update> Report Ladder<T>::taken(const Damping<T>& damping, const Update& update) {
   keep(damping);
   for (Rung& rung : rungs_) rung.state = State::stale;
   problem_is_current_ = false;
-  rungs_.front().updated = rungs_.front().op->update(problem, *damping_);
+  rungs_.front().updated = update(*rungs_.front().op);
   rungs_.front().state = State::current;
   return first_usable();
 }
@@ -161,7 +172,7 @@ template <class T> class Ladder<T>::Lent {
   Lent(Rung& rung, std::mutex& lending) : rung_(rung), lending_(lending) {
     const std::lock_guard lock(lending_);
     if (rung_.idle.empty()) {
-      workspace_ = std::make_unique<Workspace<T>>(rung_.op->workspace());
+      workspace_ = std::make_unique<Workspace<T>>(std::max(rung_.op->workspace(), rung_.op->kkt_workspace()));
       rung_.idle.reserve(++rung_.lent);
     } else {
       workspace_ = std::move(rung_.idle.back());
@@ -182,11 +193,9 @@ template <class T> class Ladder<T>::Lent {
   std::unique_ptr<Workspace<T>> workspace_;
 };
 
-template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
-  const Index m = this->size();
-  const Eigen::Map<const MatrixX<T>> right(a, m, 1);
-  Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
-  Workspace<T> of_first(workspace + padded(m), first_->workspace());
+template <class T>
+template <class Ask, class Keep>
+Report Ladder<T>::climb(Accuracy wanted, const Ask& ask, const Keep& keep_answer) const {
   Report best{Status::not_supported};
   int steps = 0, tried = 0;
   for (Rung* const rung : order()) {
@@ -196,21 +205,54 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
     Report report = prepare(*rung);
     if (report.ok()) {
       const Accuracy left{accuracy, wanted.steps - steps};
-      report = rung == &rungs_.front() ? rung->op->solve(right, answer, left, of_first)
-                                       : rung->op->solve(right, answer, left, *Lent(*rung, lending_));
+      report = rung == &rungs_.front() ? ask(*rung->op, left, nullptr) : ask(*rung->op, left, &*Lent(*rung, lending_));
     }
     report.rung = rung->row->name;
     report.rungs_tried = ++tried;
     report.iterations = steps += report.iterations;
     if (!better(report, best)) continue;
-    if (has_answer(report)) std::copy_n(workspace, m, f);
+    if (has_answer(report)) keep_answer();
     best = report;
     if (best.ok()) break;
   }
   return best;
 }
 
+template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  const Index m = this->size();
+  const Eigen::Map<const MatrixX<T>> right(a, m, 1);
+  Eigen::Map<MatrixX<T>> answer(workspace, m, 1);
+  Workspace<T> of_first(workspace + padded(m), first_->workspace());
+  return climb(
+      wanted, [&](const Operator<T>& op, Accuracy left, Workspace<T>* lent) { return op.solve(right, answer, left, lent ? *lent : of_first); },
+      [&] { std::copy_n(workspace, m, f); });
+}
+
+// Each rung begins where the best one before it ended, when a pair was given.
+template <class T>
+Report Ladder<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
+  const Index m = this->size(), n = this->structure()->dofs();
+  const Eigen::Map<const MatrixX<T>> of_motion(r1, n, 1), of_rows(r2, m, 1);
+  Eigen::Map<MatrixX<T>> motion(workspace, n, 1), forces(workspace + padded(n), m, 1);
+  Workspace<T> of_first(workspace + padded(n) + padded(m), first_->kkt_workspace());
+  return climb(
+      wanted,
+      [&](const Operator<T>& op, Accuracy left, Workspace<T>* lent) {
+        std::copy_n(nu, start == Start::given ? n : 0, motion.data());
+        std::copy_n(lambda, start == Start::given ? m : 0, forces.data());
+        return op.solve_kkt(of_motion, of_rows, motion, forces, left, lent ? *lent : of_first, start);
+      },
+      [&] {
+        std::copy_n(motion.data(), n, nu);
+        std::copy_n(forces.data(), m, lambda);
+      });
+}
+
 template <class T> Index Ladder<T>::do_workspace(Index) const { return padded(this->size()) + first_->workspace(); }
+
+template <class T> Index Ladder<T>::do_kkt_workspace() const {
+  return padded(this->structure()->dofs()) + padded(this->size()) + first_->kkt_workspace();
+}
 
 template <class T> Index Ladder<T>::do_bytes() const {
   const std::lock_guard lock(preparing_);

@@ -39,8 +39,11 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
+  [[nodiscard]] Index do_kkt_workspace() const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
@@ -56,8 +59,12 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   };
   class Lent;  // a workspace of a rung, given back at the end
   void keep(const Damping<T>& damping);
+  /// The first rung takes the numbers, the others when they are needed.
+  template <class Update> Report taken(const Damping<T>& damping, const Update& update);
   void make_blocks();
   [[nodiscard]] bool in_wide(Index row) const;
+  /// The best report of the rungs, asked one after the other: ask(rung, accuracy, is_first) solves, keep() takes its answer.
+  template <class Ask, class Keep> Report climb(Accuracy wanted, const Ask& ask, const Keep& keep_answer) const;
   Report first_usable();
   /// Brings a rung up to the numbers of the last update.
   Report prepare(Rung& rung) const;

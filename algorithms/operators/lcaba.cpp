@@ -15,6 +15,11 @@ template <class T> Report Lcaba<T>::do_update(const Problem<T>& problem, const D
   return do_update_damping(damping);
 }
 
+template <class T> Report Lcaba<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  factor_.move_rows(problem);
+  return do_update_damping(damping);
+}
+
 template <class T> Report Lcaba<T>::do_update_damping(const Damping<T>& damping) {
   factored_ = undamped_;
   if (factored_.ok()) factored_ = weights_.assign_inverse(damping);
@@ -33,6 +38,18 @@ template <class T> Report Lcaba<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspa
     weights_.multiply(motion, y);                 // λ = λ_R − R a_R
     for (Index r = 0; r < m; ++r) y[r] = compliant[r] - y[r];
   });
+  return {};
+}
+
+// M_R ν = r₁ + JᵀR r₂;  λ = R (r₂ − J ν)
+template <class T>
+Report Lcaba<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy, Start, T* workspace) const {
+  if (!factored_.ok()) return factored_;
+  T* const rate = workspace + factor_.solve_workspace();
+  weights_.multiply(r2, lambda);
+  factor_.solve(lambda, r1, rate, nu, workspace);
+  for (Index r = 0; r < this->size(); ++r) rate[r] = r2[r] - rate[r];
+  weights_.multiply(rate, lambda);
   return {};
 }
 

@@ -14,6 +14,7 @@
 
 #include "algorithms/operators/operator.h"
 #include "algorithms/factors/factor.h"
+#include "algorithms/kit/columns.h"
 
 namespace delassus {
 
@@ -21,9 +22,12 @@ template <class T> class Lcaba : public Operator<T> {
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
+  [[nodiscard]] Index do_kkt_workspace() const override { return factor_.solve_workspace() + padded(this->size()); }
   [[nodiscard]] Index do_bytes() const override;
 
  private:

@@ -19,11 +19,21 @@ template <class T> Report LcabaQr<T>::do_update_damping(const Damping<T>& dampin
   return factored_ = factor_.update_weights(damping);
 }
 
-template <class T> Report LcabaQr<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+template <class T>
+Report LcabaQr<T>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!factored_.ok()) return factored_;
   const auto correct = [this](auto... arguments) { factor_.solve_kkt(arguments...); };
-  const auto energy = [this](const T* tau, T* work) { return factor_.mass().energy(tau, work); };
-  return refinement_.solve_with(a, f, wanted, {max_steps}, correct, energy, workspace);
+  const auto energy = [this](const T* tau, T* rest) { return factor_.mass().energy(tau, rest); };
+  return refinement_.solve_with(asked, f, wanted, {max_steps}, correct, energy, work, nu);
+}
+
+template <class T> Report LcabaQr<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return solve_pair({.r2 = a}, f, nullptr, wanted, workspace);
+}
+
+template <class T>
+Report LcabaQr<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
+  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
 }
 
 template <class T> Index LcabaQr<T>::do_workspace(Index) const { return refinement_.workspace(factor_.workspace()); }

@@ -5,7 +5,7 @@
 namespace delassus {
 
 template <class T> void LcabaRefined<T>::do_analyze() {
-  plan_ = make_plan(*this->structure(), Matrix::M_R, Branches::all);
+  plan_ = make_plan(*this->structure(), Matrix::M_R);
   factor_.analyze(*this->structure(), plan_);
   refinement_.analyze(this->structure());
 }
@@ -13,6 +13,12 @@ template <class T> void LcabaRefined<T>::do_analyze() {
 template <class T> Report LcabaRefined<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   undamped_ = factor_.start(problem);
   refinement_.update(problem);
+  return do_update_damping(damping);
+}
+
+template <class T> Report LcabaRefined<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  factor_.move_rows(problem);
+  refinement_.update_rows(problem);
   return do_update_damping(damping);
 }
 
@@ -26,7 +32,7 @@ template <class T> Report LcabaRefined<T>::do_update_damping(const Damping<T>& d
 
 // M_R δν = r₁ + JᵀR r₂;  δλ = R (r₂ − J δν)
 template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
-  T* const rate = work + factor_.workspace();
+  T* const rate = work + factor_.solve_workspace();
   refinement_.weights().multiply(r2, d_lambda);
   factor_.solve(d_lambda, r1, rate, d_nu, work);
   for (Index r = 0; r < this->size(); ++r) rate[r] = r2[r] - rate[r];
@@ -34,9 +40,19 @@ template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_
 }
 
 template <class T>
-Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
+Report LcabaRefined<T>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!factored_.ok()) return factored_;
-  return refinement_.solve(a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
+  return refinement_.solve(asked, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
+}
+
+template <class T>
+Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
+  return solve_pair({.r2 = a}, f, nu, wanted, work);
+}
+
+template <class T>
+Report LcabaRefined<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* work) const {
+  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, work);
 }
 
 template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
@@ -44,7 +60,7 @@ template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, Accura
 }
 
 template <class T> Index LcabaRefined<T>::do_workspace(Index) const {
-  return refinement_.workspace(factor_.workspace() + padded(this->size()));
+  return refinement_.workspace(factor_.solve_workspace() + padded(this->size()));
 }
 
 template <class T> Index LcabaRefined<T>::do_bytes() const { return plan_.bytes() + factor_.bytes() + refinement_.bytes(); }

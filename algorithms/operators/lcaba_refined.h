@@ -31,12 +31,15 @@ template <class T> class LcabaRefined : public ColumnByColumn<T> {
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
 
   Plan plan_;

@@ -59,7 +59,18 @@ template <class T> Report Operator<T>::update(const Problem<T>& problem, const D
   problem.check_sizes();
   damping.check_sizes(*structure_);
   updated_ = true;
-  const Report updated = do_update(problem, damping);
+  return damped(damping, do_update(problem, damping));
+}
+
+template <class T> Report Operator<T>::update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  require(updated_, "Operator::update_rows: call update first");
+  require(problem.structure == structure_, "Operator::update_rows: the problem has another structure than analyze saw");
+  problem.check_sizes();
+  damping.check_sizes(*structure_);
+  return damped(damping, do_update_rows(problem, damping));
+}
+
+template <class T> Report Operator<T>::damped(const Damping<T>& damping, const Report& updated) {
   damping_ = damping.judged(scratch_);
   return damping_.ok() ? updated : damping_;
 }
@@ -67,9 +78,7 @@ template <class T> Report Operator<T>::update(const Problem<T>& problem, const D
 template <class T> Report Operator<T>::update_damping(const Damping<T>& damping) {
   require(updated_, "Operator::update_damping: call update first");
   damping.check_sizes(*structure_);
-  const Report updated = do_update_damping(damping);
-  damping_ = damping.judged(scratch_);
-  return damping_.ok() ? updated : damping_;
+  return damped(damping, do_update_damping(damping));
 }
 
 namespace {
@@ -150,6 +159,29 @@ template <class T> Report Operator<T>::solve(ConstRef<T> a, Ref<T> f, Accuracy w
   return finished<T>(damping_.ok() ? do_solve_to(a, f, wanted, w.data()) : damping_, a, f);
 }
 
+template <class T>
+Report Operator<T>::solve_kkt(ConstRef<T> r1, ConstRef<T> r2, Ref<T> nu, Ref<T> lambda, Accuracy wanted, Workspace<T>& w, Start start) const {
+  require(updated_, "Operator::solve_kkt: call update first");
+  require(r1.rows() == structure_->dofs() && nu.rows() == structure_->dofs(), "Operator::solve_kkt: r1 and nu must have one row per degree of freedom");
+  require(r2.rows() == size() && lambda.rows() == size(), "Operator::solve_kkt: r2 and lambda must have as many rows as the operator");
+  require(r1.cols() == r2.cols() && r1.cols() == nu.cols() && r1.cols() == lambda.cols(), "Operator::solve_kkt: all must have the same number of columns");
+  require(w.size() >= kkt_workspace(), "Operator::solve_kkt: workspace too small (see Operator::kkt_workspace)");
+  require(!overlap(r1.data(), r1.outerStride(), nu.data(), nu.outerStride(), r1.rows(), r1.cols()) &&
+              !overlap(r2.data(), r2.outerStride(), lambda.data(), lambda.outerStride(), r2.rows(), r2.cols()),
+          "Operator::solve_kkt: input and output must not overlap");
+  require(wanted.error >= 0, "Operator::solve_kkt: the wanted accuracy is negative or NaN");
+  require(wanted.steps >= 0, "Operator::solve_kkt: the number of steps is negative");
+  if (r1.cols() == 0) return {};
+  Report report = damping_;
+  for (Index c = 0; c < r1.cols() && damping_.ok(); ++c)
+    report = worse(report, do_solve_kkt(r1.data() + c * r1.outerStride(), r2.data() + c * r2.outerStride(), nu.data() + c * nu.outerStride(),
+                                        lambda.data() + c * lambda.outerStride(), wanted, start, w.data()));
+  report = finished<T>(finished<T>(report, r1, nu), r2, lambda);
+  if (!report.ok() && report.status != Status::not_converged) poison<T>(nu);
+  return report;
+}
+
+template <class T> Report Operator<T>::do_solve_kkt(const T*, const T*, T*, T*, Accuracy, Start, T*) const { return {Status::not_supported}; }
 template <class T> Report Operator<T>::do_apply(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 template <class T> Report Operator<T>::do_solve(ConstRef<T>, Ref<T>, T*) const { return {Status::not_supported}; }
 
@@ -161,6 +193,11 @@ template <class T> const std::vector<Index>& Operator<T>::dependent_rows() const
 template <class T> Index Operator<T>::workspace(Index columns) const {
   require(structure_ != nullptr, "Operator::workspace: call analyze first");
   return do_workspace(columns);
+}
+
+template <class T> Index Operator<T>::kkt_workspace() const {
+  require(structure_ != nullptr, "Operator::kkt_workspace: call analyze first");
+  return do_kkt_workspace();
 }
 
 template <class T> Index Operator<T>::bytes() const {

@@ -10,6 +10,15 @@ template <class T, class F> void ProximalWith<T, F>::do_analyze() {
 
 template <class T, class F> Report ProximalWith<T, F>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
   refinement_.update(problem);
+  return take_rows(problem, damping);
+}
+
+template <class T, class F> Report ProximalWith<T, F>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  refinement_.update_rows(problem);
+  return take_rows(problem, damping);
+}
+
+template <class T, class F> Report ProximalWith<T, F>::take_rows(const Problem<T>& problem, const Damping<T>& damping) {
   undamped_ = refinement_.factor_mass();
   if (undamped_.ok()) undamped_ = inverse_.update(problem, refinement_.factor_M());
   return do_update_damping(damping);
@@ -20,9 +29,19 @@ template <class T, class F> Report ProximalWith<T, F>::do_update_damping(const D
   return factored_ = undamped_.ok() ? inverse_.update_damping(damping) : undamped_;
 }
 
-template <class T, class F> Report ProximalWith<T, F>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+template <class T, class F>
+Report ProximalWith<T, F>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!factored_.ok()) return factored_;
-  return refinement_.solve(a, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, workspace);
+  return refinement_.solve(asked, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, work, nu);
+}
+
+template <class T, class F> Report ProximalWith<T, F>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
+  return solve_pair({.r2 = a}, f, nullptr, wanted, workspace);
+}
+
+template <class T, class F>
+Report ProximalWith<T, F>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
+  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
 }
 
 template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index) const {

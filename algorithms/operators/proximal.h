@@ -26,12 +26,16 @@ template <class T, class F> class ProximalWith : public ColumnByColumn<T> {
  protected:
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
+  Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
+  Report take_rows(const Problem<T>& problem, const Damping<T>& damping);
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   Refinement<T> refinement_;
   CappedInverse<T, F> inverse_;
   Report undamped_, factored_;

@@ -114,10 +114,12 @@ template <class T> void Damping<T>::multiply(const VectorX<T>& x, VectorX<T>& y)
   require(x.size() == static_cast<Index>(diagonal.size()), "Damping: x does not have one entry per row");
   require(&x != &y, "Damping: x and y are the same vector");
   y.resize(x.size());
-  for (Index i = 0; i < x.size(); ++i) y[i] = diagonal[i] * x[i];
+  const auto off = [this](Index row) { return ScalarTraits<T>::is_infinite(diagonal[static_cast<std::size_t>(row)]); };
+  for (Index i = 0; i < x.size(); ++i) y[i] = off(i) ? T(0) : T(diagonal[i] * x[i]);
   for (const Block& b : blocks)
     for (Index j = 0; j < b.R_inverse.cols(); ++j)
-      for (Index i = 0; i < b.R_inverse.rows(); ++i) y[b.row + i] += b.R_inverse(i, j) * x[b.row + j];
+      for (Index i = 0; i < b.R_inverse.rows(); ++i)
+        if (!off(b.row + i) && !off(b.row + j)) y[b.row + i] += b.R_inverse(i, j) * x[b.row + j];
 }
 
 template <class T> void Damping<T>::check_sizes(const Structure& s) const {
@@ -143,11 +145,12 @@ template <class T> void Damping<T>::check_sizes(const Structure& s) const {
 template <class T> Report Damping<T>::judged(std::vector<T>& scratch) const {
   if (blocks.empty() && all_right(diagonal)) return {};
   for (std::size_t r = 0; r < diagonal.size(); ++r)
-    if (!finite(diagonal[r]) || negative(diagonal[r])) return {Status::bad_damping, static_cast<Index>(r)};
+    if (!(finite(diagonal[r]) || ScalarTraits<T>::is_infinite(diagonal[r])) || negative(diagonal[r]))
+      return {Status::bad_damping, static_cast<Index>(r)};
   for (const Block& b : blocks) {
     if (!right(b.R_inverse, scratch.data())) return {Status::bad_damping, b.row};
     for (Index r = b.row; r < b.row + b.R_inverse.rows(); ++r)
-      if (!(diagonal[r] == T(0))) return {Status::bad_damping, r};
+      if (!(diagonal[r] == T(0) || ScalarTraits<T>::is_infinite(diagonal[r]))) return {Status::bad_damping, r};
   }
   return {};
 }
@@ -157,9 +160,9 @@ template <class T> void Damping<T>::validate(const Structure& s) const {
     throw ModelError("", "damping", std::to_string(diagonal.size()) + " entries",
                      std::to_string(s.rows) + ", one per row; give R^-1 of every row");
   for (Index i = 0; i < s.rows; ++i)
-    if (!finite(diagonal[i]) || diagonal[i] < T(0))
+    if (!(diagonal[i] >= T(0)))
       throw ModelError("", "damping of row " + std::to_string(i),
-                       number_text(static_cast<double>(diagonal[i])) + " 1/kg", "finite and 0 or more [1/kg]; 0 makes a hard row");
+                       number_text(static_cast<double>(diagonal[i])) + " 1/kg", "0 or more [1/kg]; 0 makes a hard row, ∞ switches it off");
   if (blocks.empty()) return;
   const auto owner = row_owners(s);
   Index next = 0;
@@ -173,8 +176,8 @@ template <class T> void Damping<T>::validate(const Structure& s) const {
       throw ModelError("", element, std::to_string(size) + " rows reach beyond one constraint",
                        "a block over rows of one constraint; split it");
     for (Index i = b.row; i < next; ++i)
-      if (!(diagonal[i] == T(0)))
-        throw ModelError("", element, "row " + std::to_string(i) + " also has a diagonal entry", "0 there; put all of a block into the block");
+      if (!(diagonal[i] == T(0) || ScalarTraits<T>::is_infinite(diagonal[i])))
+        throw ModelError("", element, "row " + std::to_string(i) + " also has a diagonal entry", "0 there, or ∞; put all of a block into the block");
   }
 }
 

@@ -74,7 +74,8 @@ template <class T> template <class U> Problem<U> Problem<T>::cast() const {
 
 template <class T> template <class U> Damping<U> Damping<T>::cast() const {
   Damping<U> d;
-  d.diagonal = convert<U>(diagonal);
+  d.diagonal.reserve(diagonal.size());
+  for (const T& x : diagonal) d.diagonal.push_back(ScalarTraits<T>::is_infinite(x) ? ScalarTraits<U>::infinity() : convert<U>(x));
   d.blocks.reserve(blocks.size());
   for (const Block& b : blocks) d.blocks.push_back({b.row, convert<U>(b.R_inverse)});
   return d;

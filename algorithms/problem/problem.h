@@ -72,28 +72,29 @@ template <class T> struct Problem {
 };
 
 /// R⁻¹: one non-negative number per row [1/kg], or symmetric positive semidefinite blocks over the rows of one
-/// constraint. Zero means a hard constraint.
+/// constraint. Zero means a hard constraint; ∞ switches a row off: λ_r = 0 exactly, as if the row were not there. So rows come
+/// and go, up to the capacity that analyze saw, without a new plan.
 template <class T> struct Damping {
   struct Block {
     Index row;              ///< first row; size from the matrix
     MatrixX<T> R_inverse;   ///< symmetric positive semidefinite
   };
-  std::vector<T> diagonal;    ///< m entries; rows inside a block have 0 here
+  std::vector<T> diagonal;    ///< m entries; rows inside a block have 0 here, or ∞: then the rest of the block holds
   std::vector<Block> blocks;  ///< disjoint, in ascending order of rows
 
   [[nodiscard]] static Damping uniform(Index rows, const T& value) {
     return {std::vector<T>(static_cast<std::size_t>(rows), value), {}};
   }
-  /// y = R⁻¹ x. Shapes: m.
+  /// y = R⁻¹ x, 0 in rows that are off. Shapes: m.
   void multiply(const VectorX<T>& x, VectorX<T>& y) const;
   /// @throws std::logic_error when the sizes do not fit, or a block is not within the rows of one constraint. Cost: one pass
   /// over blocks and constraints where these are in the order of their rows.
   void check_sizes(const Structure& s) const;
-  /// bad_damping at the first row that is negative, infinite or NaN, is given twice (in a block and on the diagonal), or whose
+  /// bad_damping at the first row that is negative, −∞ or NaN, is given twice (in a block and on the diagonal), or whose
   /// block is not symmetric or not positive semidefinite (beyond rounding, in arithmetic that rounds); ok. `scratch` needs the
   /// entries of the largest block. Cost O(m), and m_e³/3 per block of m_e rows.
   [[nodiscard]] Report judged(std::vector<T>& scratch) const;
-  /// @throws ModelError for a negative or non-finite entry, a block that is not symmetric or overlaps.
+  /// @throws ModelError for an entry that is negative or NaN, a block that is not symmetric or overlaps.
   void validate(const Structure& s) const;
   template <class U> [[nodiscard]] Damping<U> cast() const;
 };

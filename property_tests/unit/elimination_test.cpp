@@ -37,6 +37,7 @@ TEST(Elimination, TheModelNoticesWrongPlans) {
   EXPECT_NE(broken([](Plan& p) { p.matrix = Matrix::M; }), "");
   EXPECT_NE(broken([](Plan& p) { p.runs.front().end -= 1; }), "");
   EXPECT_NE(broken([](Plan& p) { p.runs.front().chain = !p.runs.front().chain; }), "");
+  EXPECT_NE(broken([](Plan& p) { p.first_active_run += 1; }), "");
 }
 
 }  // namespace
