@@ -31,18 +31,20 @@ template <class T> struct ForwardDynamics<T>::Numbers {
   Factor<T> factor;
   std::unique_ptr<Operator<T>> op;
   Workspace<T> work, sweep;
-  VectorX<T> none;         // no forces on the rows
-  MatrixX<T> right, left;  // m × 1
+  VectorX<T> none, rate;                 // no forces on the rows; their accelerations
+  MatrixX<T> force, wanted, motion, rows;  // of the pair: n × 1, m × 1
   Report factored;
 
   Numbers(std::shared_ptr<const Structure> s, const OperatorRow& row)
-      : structure(std::move(s)), plan(make_plan(*structure, Matrix::M, Branches::all)), op(row.make<T>()), work(0), sweep(0) {
+      : structure(std::move(s)), plan(make_plan(*structure, Matrix::M)), op(row.make<T>()), work(0), sweep(0) {
     factor.analyze(*structure, plan);
     op->analyze(structure);
-    work = Workspace<T>(op->workspace());
-    sweep = Workspace<T>(factor.workspace());
+    work = Workspace<T>(op->kkt_workspace());
+    sweep = Workspace<T>(factor.solve_workspace());
     none.setConstant(structure->rows, T(0));
-    right = left = MatrixX<T>::Constant(structure->rows, 1, T(0));
+    rate = none;
+    force = motion = MatrixX<T>::Constant(structure->dofs(), 1, T(0));
+    wanted = rows = MatrixX<T>::Constant(structure->rows, 1, T(0));
   }
 };
 
@@ -68,7 +70,7 @@ template <class T> Report ForwardDynamics<T>::aba(const VectorX<T>& f, VectorX<T
   require(f.size() == n, "aba: the forces do not have one entry per degree of freedom");
   acceleration.setConstant(n, ScalarTraits<T>::nan());
   if (!own.factored.ok()) return own.factored;
-  own.factor.solve(own.none.data(), f.data(), own.left.data(), acceleration.data(), own.sweep.data());
+  own.factor.solve(own.none.data(), f.data(), own.rate.data(), acceleration.data(), own.sweep.data());
   return {};
 }
 
@@ -76,15 +78,17 @@ template <class T>
 Report ForwardDynamics<T>::constrained_aba(const VectorX<T>& f, const VectorX<T>& a, Accuracy wanted, VectorX<T>& acceleration,
                                            VectorX<T>& lambda) {
   Numbers& own = *own_;
-  const Index m = own.structure->rows;
+  const Index m = own.structure->rows, n = own.structure->dofs();
+  require(f.size() == n, "constrained_aba: the forces do not have one entry per degree of freedom");
   require(a.size() == m, "constrained_aba: the accelerations do not have one entry per row");
+  acceleration.setConstant(n, ScalarTraits<T>::nan());
   lambda.setConstant(m, ScalarTraits<T>::nan());
-  const Report free = aba(f, acceleration);  // left: J M⁻¹ f
-  if (!free.ok()) return free;
-  own.right.col(0) = a - own.left.col(0);
-  const Report report = own.op->solve(own.right, own.left, wanted, own.work);
-  lambda = own.left.col(0);
-  own.factor.solve(lambda.data(), f.data(), own.right.data(), acceleration.data(), own.sweep.data());  // M⁻¹ (f + Jᵀλ)
+  if (!own.factored.ok()) return own.factored;
+  own.force.col(0) = f;
+  own.wanted.col(0) = a;
+  const Report report = own.op->solve_kkt(own.force, own.wanted, own.motion, own.rows, wanted, own.work);
+  acceleration = own.motion.col(0);
+  lambda = own.rows.col(0);
   return report;
 }
 

@@ -8,8 +8,8 @@
 // Every row is an equation: a contact held by these may pull, a limit too. Cones and inequalities are a solver's business.
 // a is the acceleration wanted of the rows, zero where constraints just hold; the paper's a_des is a − J̇ν. R⁻¹ = 0 is a hard
 // row; the more damping, the more a row gives way: its acceleration is off by R⁻¹λ.
-// How      c and J̇ν by motion.h; M⁻¹ by the articulated-body factor (factor.h); λ by an operator of the table,
-//          Λ_R (a − J̇ν − J M⁻¹(τ − c)), ladder unless another one is named: its report comes with the answer.
+// How      c and J̇ν by motion.h; M⁻¹ by the articulated-body factor (factor.h); ν̇ and λ by an operator of the table,
+//          its solve_kkt with r₁ = τ − c and r₂ = a − J̇ν, ladder unless another one is named: its report comes with the answer.
 // Sizes    n degrees of freedom, m rows; forces [N m or N], accelerations [rad/s² or m/s²], in the order of model.h.
 // Cost     O(N + m) but for crba, which is O(n d + n²) at depth d and allocates; nothing else does after the
 //          first call, or what the operator does for the first time.
@@ -45,8 +45,8 @@ template <class T> class ForwardDynamics {
 
   /// ν̇ = M⁻¹ f for f = τ − c. Shapes n. Report: lost_pivot; ν̇ is NaN then.
   [[nodiscard]] Report aba(const VectorX<T>& f, VectorX<T>& acceleration);
-  /// M ν̇ − Jᵀλ = f,  J ν̇ + R⁻¹λ = a. Shapes n and m. The report is that of the operator's solve for λ, which holds for
-  /// λ alone; ν̇ is what these λ do, by one more sweep. When it is not ok, see Operator::solve for what λ holds.
+  /// M ν̇ − Jᵀλ = f,  J ν̇ + R⁻¹λ = a. Shapes n and m. The report is that of Operator::solve_kkt and holds for the pair;
+  /// see there for what it holds when it is not ok.
   [[nodiscard]] Report constrained_aba(const VectorX<T>& f, const VectorX<T>& a, Accuracy wanted, VectorX<T>& acceleration,
                                        VectorX<T>& lambda);
 
