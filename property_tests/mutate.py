@@ -151,10 +151,12 @@ class Copy:
         for name in ("mutant_killer.cpp", "models_killer.cpp", "killing.cpp", "killing.h"):
             shutil.copy(os.path.join(HERE, name), os.path.join(fresh, "property_tests"))
         for name in self.way_in:  # what is not mutated comes from the compiler's cache
-            with open(os.path.join(fresh, folder_of(name), "CMakeLists.txt"), "a", encoding="utf-8") as f:
-                f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1;-UNDEBUG\")\n" % name)
+            part, _, room = folder_of(name).partition("/")
+            with open(os.path.join(fresh, part, "CMakeLists.txt"), "a", encoding="utf-8") as f:
+                f.write("set_source_files_properties(%s PROPERTIES COMPILE_OPTIONS \"-w;-O1;-UNDEBUG\")\n" % os.path.join(room, name))
         if not self.way_in:
             self.fewer_scalars(fresh)
+        self.take_over(fresh)
 
     def take_over(self, fresh):
         """Makes the tree equal to `fresh` without touching files that are equal already."""
