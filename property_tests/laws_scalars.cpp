@@ -90,13 +90,32 @@ const char* why_not_refusal(const OperatorRow& op, const Case& c) {
   return by_rounding_only ? "its hard rows depend on others but for the rounding of their numbers" : nullptr;
 }
 
-/// Hard or dependent rows. Solved in rational numbers: solved in double. Refused in rational numbers: refused in double,
+/// Whether the operator's own product hides how good an answer is: the solution rounded to double, and neighbours a few units
+/// away, put through it in double leave a residual above what an iteration on it must reach, 30 eps m (‖A‖‖y‖ + ‖x‖). So it is
+/// where J M⁻¹Jᵀ is a small difference of large numbers.
+bool product_hides(const OperatorRow& op, const Case& c, const MatrixX<Rational>& solution, const MatrixX<double>& x) {
+  constexpr Index neighbours = 8;
+  const Route<double> route(op, c.problem, c.damping);
+  if (!op.applies || route.run(solve, x).called.status != Status::not_converged) return false;
+  const MatrixX<double> y = converted<double>(solution);
+  MatrixX<double> ys(y.rows(), neighbours);
+  for (Index k = 0; k < neighbours; ++k) ys.col(k) = y * (1 + 2 * static_cast<double>(k) * unit_roundoff<double>);
+  const MatrixX<double> got = route.narrow(apply, ys);
+  const double size = static_cast<double>(norm(definition<double>(apply, c))) * y.norm() + x.norm();
+  for (Index k = 0; k < neighbours; ++k)
+    if ((got.col(k) - x).norm() > pass_below * unit_roundoff<double> * static_cast<double>(c.rows()) * size) return true;
+  return false;
+}
+
+/// Hard or dependent rows. Solved in rational numbers: solved in double, or, by an operator whose error is normwise, not
+/// converged where its own product hides it. Refused in rational numbers: refused in double,
 /// or answered with a residual A y − a within rounding, the answer to a problem that differs by rounding (in norm, for
 /// the error class normwise: by ‖A‖‖y‖ too).
 Verdict same_refusal(const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
   const auto exact = answered<Rational>(op, c, converted<Rational>(x));
   const auto rounded = answered<double>(op, c, x);
+  if (exact && !rounded && op.solve_error == ErrorClass::normwise && product_hides(op, c, *exact, x)) return {0, bound_name(apply, op), -1, {}};
   if (exact && !rounded) return failure("solved in rational numbers, refused in double", bound_name(apply, op));
   if (exact || !rounded) return {0, bound_name(apply, op), -1, {}};
   const MatrixX<Quad>& A = definition<double>(apply, c);

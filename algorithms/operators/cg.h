@@ -4,7 +4,7 @@
 // What     f = A⁻¹ a by Krylov iteration; a = A f directly.
 // Formula  Hestenes and Stiefel's recurrences.
 // Singular A may be singular when a lies in its range (redundant rows without damping): the iterate is then a solution
-//          without null-space part. Stagnation is reported as not_converged with the backward error reached.
+//          without null-space part. Stagnation is not_converged, with the backward error reached; also where J M⁻¹Jᵀ is a small difference of large numbers: rounding hides it.
 // How      stops when the recurrence's residual falls below eps (λmax ‖f‖ + ‖a‖), λmax the largest Rayleigh quotient seen,
 //          or after 10 m + 50 iterations, or as many as wanted; then the residual is recomputed, and where rounding has left
 //          it larger the iteration starts again from it, up to three times. In exact arithmetic at most m iterations suffice.

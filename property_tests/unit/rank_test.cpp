@@ -91,5 +91,19 @@ TEST(Rank, RefusalsCanFail) {
   EXPECT_TRUE(passed(softened<-40>()));
 }
 
+/// not_converged is excused only where the operator's own product hides how good the best answer is.
+TEST(Rank, RefusalsOfWhatIsSolvedCanFail) {
+  const OperatorRow gives_up = defect<Place::answer>("gives_up", "", [](auto a) {
+                                 if (a.solve && std::is_same_v<scalar_of<decltype(a)>, double>) a.report.status = Status::not_converged;
+                               }).op;
+  ASSERT_EQ(gives_up.solve_error, ErrorClass::normwise);
+  ASSERT_TRUE(gives_up.applies);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Case c = make_case("hard", 4, seed);
+    EXPECT_TRUE(check(find_law("refuses as in exact arithmetic"), find_operator("cg"), c).passed()) << seed;
+    EXPECT_FALSE(check(find_law("refuses as in exact arithmetic"), gives_up, c).passed()) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace delassus::laws
