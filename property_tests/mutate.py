@@ -212,7 +212,8 @@ class Copy:
         program = os.path.join(self.build, "property_tests", killer_of(name))
         done = subprocess.run([program, "--mutants", str(count)] + FILES[name].split(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                               text=True, errors="replace", preexec_fn=limits, cwd=self.tree)
-        said = [tuple(line.split(" ", 2)[1:]) for line in done.stdout.split("\n") if line]
+        lines = (re.match(r"\d+ (survived|failed|crashed|time) (.*)", line) for line in done.stdout.split("\n"))  # tests print, too
+        said = [line.groups() for line in lines if line]
         if count and len(said) != count + 1:
             raise RuntimeError("the killer ended with %d: %s" % (done.returncode, done.stdout[-500:]))
         return said[1:] if count else said
