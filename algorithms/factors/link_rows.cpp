@@ -1,30 +1,13 @@
 #include "algorithms/factors/link_rows.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
+#include "algorithms/factors/link_order.h"
 #include "algorithms/kit/instantiate.h"
 
 namespace delassus {
 namespace {
-
-// The links of a constraint by steps: (step, place in the constraint).
-using Links = std::vector<std::pair<int, int>>;
-Links by_steps(const Structure::LinkConstraint& e, const Plan& plan) {
-  Links links;
-  for (const auto& link : e.links) links.emplace_back(plan.step[link.body], static_cast<int>(links.size()));
-  std::sort(links.begin(), links.end());
-  return links;
-}
-
-bool same_steps(const Links& a, const Links& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first == y.first; });
-}
-
-bool earlier_steps(const Links& a, const Links& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-}
 
 // Where the pair of places a, b stands among (0,1) (0,2) … (1,2) … of n.
 int place_of_pair(int a, int b, int n) {
@@ -32,50 +15,72 @@ int place_of_pair(int a, int b, int n) {
   return a * (2 * n - a - 1) / 2 + b - a - 1;
 }
 
+// What analyze will append, counted first.
+struct Counts {
+  std::size_t groups = 0, bodies = 0, pairs = 0, spans = 0, segments = 0, links = 0;
+};
+Counts counted(const Structure& s, const LinkOrder& sorted) {
+  Counts all;
+  for (int k = 0; k < sorted.size(); ++k) {
+    const std::size_t n = sorted.links(sorted[k]).size();
+    const bool same = k > 0 && sorted.same_bodies(sorted[k], sorted[k - 1]);
+    const auto& e = s.link_constraints;
+    const bool adjacent = same && e[sorted[k - 1]].row + e[sorted[k - 1]].rows == e[sorted[k]].row;
+    if (!same) ++all.groups, all.bodies += n, all.pairs += n * (n - (n > 0)) / 2;
+    if (!adjacent) ++all.spans, all.segments += n;
+    all.links += n;
+  }
+  return all;
+}
+
 }  // namespace
 
 template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& plan) {
+  const LinkOrder sorted(s, plan);
   groups_.clear(), steps_.clear(), again_.clear(), pairs_.clear(), constraints_.clear(), segments_.clear(), spans_.clear(), sources_.clear();
-  const std::size_t count = s.link_constraints.size();
-  std::vector<Links> links;
-  links.reserve(count);
-  for (const auto& e : s.link_constraints) links.push_back(by_steps(e, plan));
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return earlier_steps(links[a], links[b]); });
-
+  const Counts all = counted(s, sorted);
+  groups_.reserve(all.groups + 1);
+  steps_.reserve(all.bodies);
+  again_.reserve(all.bodies);
+  pairs_.reserve(all.pairs);
+  spans_.reserve(all.spans);
+  segments_.reserve(all.segments);
+  constraints_.reserve(static_cast<std::size_t>(sorted.size()));
+  sources_.reserve(all.links);
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   std::vector<char> seen(static_cast<std::size_t>(plan.active()), 0);
   int first = 0, largest = 0;
-  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-    const Links& bodies = links[order[begin]];
+  for (int begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    const auto links = sorted.links(sorted[begin]);
     Group group{size(steps_), size(pairs_), size(constraints_), 0, first};
-    const int n = size(bodies), first_span = size(spans_);
-    for (end = begin; end < count && same_steps(links[order[end]], bodies); ++end) {
-      const auto& e = s.link_constraints[order[end]];
+    const int n = size(links), first_span = size(spans_);
+    for (end = begin; end < sorted.size() && sorted.same_bodies(sorted[end], sorted[begin]); ++end) {
+      const auto& e = s.link_constraints[sorted[end]];
       const int row = static_cast<int>(e.row), rows = static_cast<int>(e.rows);
       if (end > begin && spans_.back().row + spans_.back().rows == row) spans_.back().rows += rows;
       else spans_.push_back({group.first_body, n, row, rows, first + group.rows, 0});
-      constraints_.push_back({order[end], row, rows});
+      constraints_.push_back({sorted[end], row, rows});
       group.rows += rows;
     }
     for (int b = 0; b < n; ++b) {
-      steps_.push_back(bodies[b].first - plan.first_active);
-      again_.push_back(std::exchange(seen[steps_.back()], 1));
-      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({steps_.back(), spans_[span].row, spans_[span].rows});
-      for (std::size_t k = begin; k < end; ++k) {
-        const auto& e = s.link_constraints[order[k]];
-        const Index from = e.links[links[order[k]][b].second].first;
+      const int step = links[b].step - plan.first_active;
+      steps_.push_back(step);
+      again_.push_back(std::exchange(seen[step], 1));
+      for (int k = begin; k < end; ++k) {
+        const auto& e = s.link_constraints[sorted[k]];
+        const Index from = e.links[sorted.links(sorted[k])[b].place].first;
         if (!sources_.empty() && sources_.back().from + sources_.back().rows == from) sources_.back().rows += e.rows;
         else sources_.push_back({from, first, e.rows});
         first += static_cast<int>(e.rows);
       }
     }
     for (int span = first_span; span < size(spans_); ++span) spans_[span].stride = group.rows;
-    if (const int e = order[begin]; plan.first_constraint_pair[e + 1] > plan.first_constraint_pair[e])
+    for (int b = 0; b < n; ++b)
+      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({steps_[group.first_body + b], spans_[span].row, spans_[span].rows});
+    if (plan.matrix == Matrix::M_R)
       for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
-          pairs_.push_back(plan.constraint_pairs[plan.first_constraint_pair[e] + place_of_pair(bodies[a].second, bodies[b].second, n)]);
+          pairs_.push_back(plan.constraint_pairs[plan.first_constraint_pair[sorted[begin]] + place_of_pair(links[a].place, links[b].place, n)]);
     groups_.push_back(group);
     largest = std::max(largest, first - group.first);
   }

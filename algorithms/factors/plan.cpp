@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <set>
+#include <functional>
+#include <queue>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -60,8 +61,10 @@ class Neighbours {
   std::vector<std::vector<int>> sets_;
 };
 
-// Q_i = N_i ∪ {π(i)} of every body at its elimination, in elimination order.
-using Cliques = std::vector<std::pair<int, std::vector<int>>>;
+// Q_i = N_i ∪ {π(i)} of every body at its elimination, in elimination order; one list after the other.
+struct Cliques {
+  std::vector<int> body, first{0}, members;
+};
 
 // Alg. 4, lines 12 and 16–20: eliminate, joining all members of Q_i to each other.
 Cliques minimum_degree(const Structure& s, Matrix matrix, Tree tree) {
@@ -74,22 +77,30 @@ Cliques minimum_degree(const Structure& s, Matrix matrix, Tree tree) {
     const bool extra = parent(i) >= 0 && !std::binary_search(set.begin(), set.end(), parent(i));
     return narrow(static_cast<Index>(set.size())) + (extra ? 1 : 0);
   };
-  std::vector<Key> key(n);
-  std::set<Key> ready;
+  const Key none{false, 0, 0, 0, -1};
+  std::vector<Key> key(n, none), entries;
+  entries.reserve(static_cast<std::size_t>(n));
+  std::priority_queue<Key, std::vector<Key>, std::greater<>> ready(std::greater<>{}, std::move(entries));
   const auto enter = [&](int i) {
-    key[i] = {tree.active[i] != 0, degree(i), -tree.depth[i], narrow(s.dofs(i)), i};
-    ready.insert(key[i]);
+    const Key now{tree.active[i] != 0, degree(i), -tree.depth[i], narrow(s.dofs(i)), i};
+    if (std::exchange(key[i], now) != now) ready.push(now);
   };
   for (int i = 0; i < n; ++i)
     if (tree.children[i] == 0) enter(i);
 
   Cliques cliques;
-  cliques.reserve(static_cast<std::size_t>(n));
+  cliques.body.reserve(static_cast<std::size_t>(n));
+  cliques.first.reserve(static_cast<std::size_t>(n) + 1);
+  cliques.members.reserve(static_cast<std::size_t>(n));
+  std::vector<int> q;
   while (!ready.empty()) {
-    const int i = std::get<4>(*ready.begin());
-    ready.erase(ready.begin());
+    const Key next = ready.top();
+    ready.pop();
+    const int i = std::get<4>(next);
+    if (key[i] != next) continue;  // of an old degree, or gone
+    key[i] = none;
     const int p = parent(i);
-    std::vector<int> q = neighbours[i];
+    q = neighbours[i];
     for (const int j : q) neighbours.erase(j, i);
     if (p >= 0 && !std::binary_search(q.begin(), q.end(), p)) q.insert(std::lower_bound(q.begin(), q.end(), p), p);
     if (q.size() > 1)
@@ -97,12 +108,11 @@ Cliques minimum_degree(const Structure& s, Matrix matrix, Tree tree) {
         for (const int k : q)
           if (j != k) neighbours.insert(j, k);
     for (const int j : q)
-      if (tree.children[j] == 0) {  // waiting in the queue with an old degree
-        ready.erase(key[j]);
-        enter(j);
-      }
+      if (tree.children[j] == 0) enter(j);
     if (p >= 0 && --tree.children[p] == 0) enter(p);
-    cliques.emplace_back(i, std::move(q));
+    cliques.body.push_back(i);
+    cliques.members.insert(cliques.members.end(), q.begin(), q.end());
+    cliques.first.push_back(narrow(static_cast<Index>(cliques.members.size())));
   }
   return cliques;
 }
@@ -147,15 +157,13 @@ Plan make_plan(const Structure& s, Matrix matrix, Branches branches) {
   Plan plan;
   plan.matrix = matrix;
   plan.steps = n;
-  plan.body.resize(n);
+  plan.body = cliques.body;
   plan.step.resize(n);
   plan.parent.resize(n);
-  for (int i = 0; i < n; ++i) {
-    plan.body[i] = cliques[i].first;
-    plan.step[cliques[i].first] = i;
-  }
+  for (int i = 0; i < n; ++i) plan.step[plan.body[i]] = i;
 
   Blocks blocks;
+  plan.first_constraint_pair.reserve(s.link_constraints.size() + 1);
   plan.first_constraint_pair.push_back(0);
   for (const auto& e : s.link_constraints) {
     for (std::size_t a = 0; matrix == Matrix::M_R && a < e.links.size(); ++a)
@@ -164,13 +172,18 @@ Plan make_plan(const Structure& s, Matrix matrix, Branches branches) {
     plan.first_constraint_pair.push_back(narrow(static_cast<Index>(plan.constraint_pairs.size())));
   }
 
-  plan.first_column = plan.first_member = plan.first_w = plan.first_pair = {0};
+  for (auto* const firsts : {&plan.first_column, &plan.first_member, &plan.first_w, &plan.first_pair}) {
+    firsts->reserve(static_cast<std::size_t>(n) + 1);
+    firsts->push_back(0);
+  }
+  plan.members.reserve(cliques.members.size());
+  std::vector<int> q;
   for (int i = 0; i < n; ++i) {
     const int b = plan.body[i];
     if (!tree.active[b]) plan.first_active = i + 1;
     plan.parent[i] = s.parent[b] == ground ? -1 : plan.step[s.parent[b]];
-    std::vector<int> q;
-    for (const int j : cliques[i].second) q.push_back(plan.step[j]);
+    q.clear();
+    for (int k = cliques.first[i]; k < cliques.first[i + 1]; ++k) q.push_back(plan.step[cliques.members[k]]);
     std::sort(q.begin(), q.end());
     for (const int j : q) plan.members.push_back({j, blocks.find(i, j)});
     for (std::size_t x = 0; x < q.size(); ++x)
