@@ -110,7 +110,7 @@ bool product_hides(const OperatorRow& op, const Case& c, const MatrixX<Rational>
 /// Hard or dependent rows. Solved in rational numbers: solved in double, or, by an operator whose error is normwise, not
 /// converged where its own product hides it. Refused in rational numbers: refused in double,
 /// or answered with a residual A y − a within rounding, the answer to a problem that differs by rounding (in norm, for
-/// the error class normwise: by ‖A‖‖y‖ too).
+/// the error class normwise: by ‖A‖‖y‖ too, times the m that an iteration of m products is allowed, cg.h).
 Verdict same_refusal(const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);
   const auto exact = answered<Rational>(op, c, converted<Rational>(x));
@@ -121,7 +121,10 @@ Verdict same_refusal(const OperatorRow& op, const Case& c) {
   const MatrixX<Quad>& A = definition<double>(apply, c);
   const MatrixX<Quad> residual = times<Quad>(A, converted<Quad>(*rounded)) - converted<Quad>(x);
   MatrixX<Quad> bound = error_bound(apply, op, c, *rounded);
-  if (op.solve_error == ErrorClass::normwise) bound.setConstant(maximum(bound) + norm(A) * maximum(magnitude(converted<Quad>(*rounded))));
+  const bool iterates = Route<double>(op, c.problem, c.damping).run(solve, x).called.iterations > 0;
+  const Quad products(iterates ? static_cast<double>(c.rows()) : 1);
+  if (op.solve_error == ErrorClass::normwise)
+    bound.setConstant(products * (maximum(bound) + norm(A) * maximum(magnitude(converted<Quad>(*rounded)))));
   return judge(residual, bound, unit_roundoff<double>, bound_name(apply, op));
 }
 
