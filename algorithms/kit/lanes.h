@@ -96,7 +96,7 @@ struct alignas(64) Lanes8 {
 /// Eight numbers at any address.
 [[nodiscard, gnu::always_inline]] inline Lanes8 load_lanes(const double* x) {
   const auto* const halves = reinterpret_cast<const UnalignedLanes4*>(x);
-  return {halves[0], halves[1]};
+  return {Lanes4(halves[0]), Lanes4(halves[1])};  // by value: a reference would claim an alignment that x has not
 }
 [[gnu::always_inline]] inline void store_lanes(double* x, const Lanes8& y) {
   auto* const halves = reinterpret_cast<UnalignedLanes4*>(x);
