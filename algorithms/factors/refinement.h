@@ -81,9 +81,6 @@ template <class T> class Refinement {
     const T *r1 = nullptr, *r2 = nullptr;
     const T *nu = nullptr, *lambda = nullptr;  // both, or none
   };
-  static Asked asked(const T* r1, const T* r2, const T* nu, const T* lambda, bool from_these) {
-    return {r1, r2, from_these ? nu : nullptr, from_these ? lambda : nullptr};
-  }
   /// f = λ of the (ν, λ) asked for (m). `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the

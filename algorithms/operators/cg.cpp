@@ -51,9 +51,13 @@ template <class T, class P> Report CgWith<T, P>::do_update_damping(const Damping
 // y = (J M⁻¹ Jᵀ + R⁻¹) x
 template <class T, class P> void CgWith<T, P>::multiply(const T* x, T* y, T* workspace) const {
   T* const damped = workspace + factor_.workspace();
-  std::copy(x, x + this->size(), damped);
-  damping_.switch_off(damped);
-  factor_.project(damped, y, workspace);
+  const T* forces = x;
+  if (!damping_.off().empty()) {  // rows that are off take no part
+    std::copy(x, x + this->size(), damped);
+    damping_.switch_off(damped);
+    forces = damped;
+  }
+  factor_.project(forces, y, workspace);
   damping_.multiply(x, damped);
   for (Index r = 0; r < this->size(); ++r) y[r] += damped[r];
   damping_.switch_off(y);

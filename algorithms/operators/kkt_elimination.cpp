@@ -222,11 +222,6 @@ Report KktEliminationWith<T, policy>::solve_column(const T* a, T* f, Accuracy wa
   return solve_pair({.r2 = a}, f, workspace, wanted, workspace + padded(this->structure()->dofs()));
 }
 
-template <class T, Dependent policy>
-Report KktEliminationWith<T, policy>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
-  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
-}
-
 template <class T, Dependent policy> Index KktEliminationWith<T, policy>::do_workspace(Index) const {
   return padded(this->structure()->dofs()) + refinement_.workspace(refinement_.factor_M().solve_workspace() + 2 * padded(this->size()));
 }

@@ -23,14 +23,13 @@
 #pragma once
 
 #include "algorithms/factors/hard_rows.h"
-#include "algorithms/factors/refinement.h"
-#include "algorithms/operators/column_by_column.h"
+#include "algorithms/operators/refined.h"
 
 namespace delassus {
 
 enum class Dependent : std::uint8_t { left_out, refused };
 
-template <class T, Dependent policy> class KktEliminationWith : public ColumnByColumn<T> {
+template <class T, Dependent policy> class KktEliminationWith : public Refined<T> {
  public:
   static constexpr int max_steps = 20;  // the last rung: it takes what it needs
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
@@ -45,7 +44,7 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const override;
   Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
-  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
@@ -54,7 +53,6 @@ template <class T, Dependent policy> class KktEliminationWith : public ColumnByC
   Index factor_by_rows();
   Index factor_by_pivots();
   void solve_multipliers(const T* right, T* lambda, T* work) const;
-  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   [[nodiscard]] Report check_dependent(const typename Refinement<T>::Asked& asked, const T* f, const T* nu, T* work) const;
   [[nodiscard]] double trust_in_factor();
   [[nodiscard]] std::optional<T> bound_at_rows(const T* r2, T* work) const;

@@ -27,15 +27,6 @@ Report LcabaQr<T>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, 
   return refinement_.solve_with(asked, f, wanted, {max_steps}, correct, energy, work, nu);
 }
 
-template <class T> Report LcabaQr<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
-  return solve_pair({.r2 = a}, f, nullptr, wanted, workspace);
-}
-
-template <class T>
-Report LcabaQr<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
-  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
-}
-
 template <class T> Index LcabaQr<T>::do_workspace(Index) const { return refinement_.workspace(factor_.workspace()); }
 
 template <class T> Index LcabaQr<T>::do_bytes() const { return factor_.bytes() + refinement_.bytes(); }

@@ -12,13 +12,12 @@
 // Source   square_root_factor.h; refinement: Å. Björck, 1967, on the augmented system.
 #pragma once
 
-#include "algorithms/factors/refinement.h"
 #include "algorithms/factors/square_root_factor.h"
-#include "algorithms/operators/column_by_column.h"
+#include "algorithms/operators/refined.h"
 
 namespace delassus {
 
-template <class T> class LcabaQr : public ColumnByColumn<T> {
+template <class T> class LcabaQr : public Refined<T> {
  public:
   static constexpr int max_steps = 8;
 
@@ -26,13 +25,11 @@ template <class T> class LcabaQr : public ColumnByColumn<T> {
   void do_analyze() override;
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
-  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
-  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   SquareRootFactor<T> factor_;
   Refinement<T> refinement_;
   Report factored_;

@@ -45,20 +45,6 @@ Report LcabaRefined<T>::solve_pair(const typename Refinement<T>::Asked& asked, T
   return refinement_.solve(asked, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
 }
 
-template <class T>
-Report LcabaRefined<T>::solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const {
-  return solve_pair({.r2 = a}, f, nu, wanted, work);
-}
-
-template <class T>
-Report LcabaRefined<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* work) const {
-  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, work);
-}
-
-template <class T> Report LcabaRefined<T>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
-  return solve_with_motion(a, f, nullptr, wanted, workspace);
-}
-
 template <class T> Index LcabaRefined<T>::do_workspace(Index) const {
   return refinement_.workspace(factor_.solve_workspace() + padded(this->size()));
 }

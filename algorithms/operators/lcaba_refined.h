@@ -12,17 +12,16 @@
 // Source   paper, Algorithm 4; refinement.h.
 #pragma once
 
-#include "algorithms/factors/refinement.h"
-#include "algorithms/operators/column_by_column.h"
+#include "algorithms/operators/refined.h"
 
 namespace delassus {
 
-template <class T> class LcabaRefined : public ColumnByColumn<T> {
+template <class T> class LcabaRefined : public Refined<T> {
  public:
   static constexpr int max_steps = 12;  // four bits a step and more
 
   /// One column, as solve; nu, when given, receives ν = M⁻¹Jᵀf (n), which keeps its digits where J^T f cancels.
-  Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const;
+  Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const { return solve_pair({.r2 = a}, f, nu, wanted, work); }
   /// What update was given; `to` has the structure and the sizes.
   void numbers(Problem<T>& to) const { refinement_.numbers(to); }
   /// zero_damping where the last R⁻¹ has no inverse.
@@ -33,13 +32,11 @@ template <class T> class LcabaRefined : public ColumnByColumn<T> {
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
-  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
-  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
 
   Plan plan_;

@@ -35,15 +35,6 @@ Report ProximalWith<T, F>::solve_pair(const typename Refinement<T>::Asked& asked
   return refinement_.solve(asked, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, work, nu);
 }
 
-template <class T, class F> Report ProximalWith<T, F>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {
-  return solve_pair({.r2 = a}, f, nullptr, wanted, workspace);
-}
-
-template <class T, class F>
-Report ProximalWith<T, F>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
-  return solve_pair(Refinement<T>::asked(r1, r2, nu, lambda, start == Start::given), lambda, nu, wanted, workspace);
-}
-
 template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index) const {
   return refinement_.workspace(inverse_.workspace());
 }

@@ -13,12 +13,11 @@
 #pragma once
 
 #include "algorithms/factors/capped_inverse.h"
-#include "algorithms/factors/refinement.h"
-#include "algorithms/operators/column_by_column.h"
+#include "algorithms/operators/refined.h"
 
 namespace delassus {
 
-template <class T, class F> class ProximalWith : public ColumnByColumn<T> {
+template <class T, class F> class ProximalWith : public Refined<T> {
  public:
   static constexpr int max_steps = 64;
   ProximalWith() : inverse_(std::is_same_v<F, float> ? 0x1p13 : 0x1p20) {}
@@ -28,14 +27,12 @@ template <class T, class F> class ProximalWith : public ColumnByColumn<T> {
   Report do_update(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_rows(const Problem<T>& problem, const Damping<T>& damping) override;
   Report do_update_damping(const Damping<T>& damping) override;
-  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override;
-  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
+  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const override;
   [[nodiscard]] Index do_workspace(Index columns) const override;
   [[nodiscard]] Index do_bytes() const override;
 
  private:
   Report take_rows(const Problem<T>& problem, const Damping<T>& damping);
-  Report solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const;
   Refinement<T> refinement_;
   CappedInverse<T, F> inverse_;
   Report undamped_, factored_;

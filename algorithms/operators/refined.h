@@ -1,0 +1,26 @@
+// What operators share that refine a pair (ν, λ): solve_pair answers solve, which asks for λ alone, and solve_kkt.
+#pragma once
+
+#include "algorithms/factors/refinement.h"
+#include "algorithms/operators/column_by_column.h"
+
+namespace delassus {
+
+template <class T> class Refined : public ColumnByColumn<T> {
+ protected:
+  using Asked = typename Refinement<T>::Asked;
+  /// λ (m) and, when nu is given, ν (n) of the pair asked for, as Operator::solve_kkt.
+  virtual Report solve_pair(const Asked& asked, T* lambda, T* nu, Accuracy wanted, T* workspace) const = 0;
+
+  Report solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const override {
+    return solve_pair({.r2 = a}, f, nullptr, wanted, workspace);
+  }
+
+ private:
+  Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const final {
+    const bool given = start == Start::given;
+    return solve_pair({r1, r2, given ? nu : nullptr, given ? lambda : nullptr}, lambda, nu, wanted, workspace);
+  }
+};
+
+}  // namespace delassus
