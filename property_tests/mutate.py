@@ -37,7 +37,7 @@ FILES = {
     "columns.h": "Columns lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
     "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
     "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined", "lcaba_refined.cpp": "lcaba_refined",
-    "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "cg.cpp": "krylov cg cg_preconditioned",
+    "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "explicit.cpp": "dense_cholesky", "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
     "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "damping.cpp": "lcaba aba_sweep",
