@@ -23,7 +23,8 @@ double joint_travel(JointType type, const double* q) {
   }
 }
 
-/// ℓ_i of every body's frame: the path to it, and to its tree's centre of mass, about which MuJoCo computes.
+/// ℓ_i of every body's frame: the path to it, and to the two points about which its tree is computed: the tree's centre of
+/// mass by MuJoCo, that of the root body by kinematics.
 Vector reach_of(const Model& model, const Vector& q) {
   Vector reach(static_cast<Index>(model.bodies.size()));
   for (Index i = 0; i < reach.size(); ++i) {
@@ -43,6 +44,10 @@ Vector reach_of(const Model& model, const Vector& q) {
   }
   for (Index i = 0; i < reach.size(); ++i)
     if (mass[tree(i)] > 0) reach[i] += moment[tree(i)] / mass[tree(i)];
+  for (Index i = 0; i < reach.size(); ++i) {
+    const Body& root = model.bodies[tree(i)];
+    if (root.mass > 0) reach[i] += root.com.stableNorm();
+  }
   return reach;
 }
 

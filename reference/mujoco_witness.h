@@ -67,7 +67,8 @@ class MujocoWitness {
 /// world's origin, whatever the size of the entry that results. So every number of the problem is replaced by the size
 /// of what it was computed from:
 ///   axis → 1,  position of body i → ℓ_i = Σ of the lengths of all translations from the world's origin to it, and the mean
-///   of the same lengths to its tree's centre of mass (MuJoCo computes about that),
+///   of the same lengths to its tree's centre of mass (MuJoCo computes about that), and the length to its root body's (so
+///   does kinematics: where the one is far from the tree and the other in it, kinematics loses digits that MuJoCo keeps),
 ///   I_c → its Frobenius norm; every direction of K → its length; distance rows additionally by (ℓ_a + ℓ_b)/|d| + 1;
 ///   rows 𝒦 → 1 within their joint,
 /// and J = J_abs, M = M_abs of that problem are the path sums of sensitivity.h. With X = M⁻¹Jᵀ of the given problem in
