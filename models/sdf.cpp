@@ -103,6 +103,9 @@ void SdfBuilder::place(const SdfDocument::Link& link, const Frame& frame) {
   bodies_.place(link.name, frame, link.shapes, link.meshes, out_, tally_);
   if (frame.body == ground) return;
   const std::string element = link.element + " <inertial>";
+  if (link.inertia_asked_of_shapes)
+    fail(element, "auto=\"true\" asks for mass and inertia of the collision shapes, which this version of libsdformat does not compute", "<mass> [kg] and <inertia> [kg m^2] as numbers; write them into the file");
+  if (link.has_inertial && !link.mass_given) findings_.warn("no mass", options_.file, element, "has no <mass>: SDF then takes 1 kg", "<mass> [kg]");
   if (!link.has_inertial)
     findings_.warn("no inertial", options_.file, element, "is missing: SDF then takes 1 kg and 1 kg m^2 about every axis", "<inertial>, or a link fixed to the world");
   judge_inertia(findings_, options_.file, element, link.mass, link.inertia);

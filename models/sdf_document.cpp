@@ -5,6 +5,7 @@
 #ifdef DELASSUS_SDFORMAT
 
 #include <filesystem>
+#include <set>
 
 #include <sdf/sdf.hh>
 
@@ -40,12 +41,13 @@ class SdfReader {
     leave_out_of_sdf(*document.RootElement());
     check_sdf_words(options_.file, *document.RootElement());
     check_counts(options_.file, *document.RootElement(), findings_);
+    automatic_ = links_of_automatic_inertia(*document.RootElement());
     const std::string text = text_on_its_lines(document);
     const SdfConsole console;
     load(text, console, *document.RootElement());
     for (const std::string& printed : console.messages()) {
       const SdfSaid said = sdf_said(printed);
-      findings_.warn("said by libsdformat", options_.file, said.element, said.text, "see what it says");
+      findings_.warn("said by libsdformat", options_.file, said.element, said.text, said.accepted);
     }
     std::vector<const sdf::Model*> models;
     if (root_.Model() != nullptr) models.push_back(root_.Model());
@@ -125,6 +127,8 @@ class SdfReader {
     out.pose = model * resolve(l.SemanticPose(), "__model__", element);
     out.fixed = fixed;
     out.has_inertial = l.Element() != nullptr && l.Element()->HasElement("inertial");
+    out.mass_given = out.has_inertial && l.Element()->GetElement("inertial")->HasElement("mass");
+    out.inertia_asked_of_shapes = out.line > 0 && automatic_.count(out.line) > 0;
     out.mass = l.Inertial().MassMatrix().Mass();
     out.centre = pose_of(l.Inertial().Pose());
     const ignition::math::Matrix3d I = l.Inertial().MassMatrix().Moi();
@@ -238,6 +242,7 @@ class SdfReader {
   const RobotOptions& options_;
   Findings& findings_;
   XmlLines lines_;
+  std::set<int> automatic_;  ///< lines of links
   sdf::Root root_;
   SdfDocument out_;
 };

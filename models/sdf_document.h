@@ -15,7 +15,8 @@ struct SdfDocument {
     int line = 0;                   ///< 0: not known
     Pose<double> pose;              ///< in the world
     bool fixed = false;             ///< of a static model
-    bool has_inertial = false;
+    bool has_inertial = false, mass_given = false;
+    bool inertia_asked_of_shapes = false;  ///< <inertial auto="true">, which SDF has from 1.11 on
     double mass = 0;
     Pose<double> centre;            ///< of the inertial frame in the link
     Matrix3<double> inertia = Matrix3<double>::Zero();  ///< axes of `centre`

@@ -8,6 +8,7 @@
 
 #include <console_bridge/console.h>
 #include <sdf/Console.hh>
+#include <sdf/sdf_config.h>
 
 #include "algorithms/errors/message.h"
 #include "models/library_console.h"
@@ -115,6 +116,8 @@ SdfSaid sdf_said(const sdf::Errors& errors, const std::vector<std::string>& prin
 }
 
 SdfSaid sdf_said(const std::string& printed) {
+  if (begins(printed, "Unable to convert from SDF version"))
+    return {"<sdf version>", printed + "; it is read as " + SDF_PROTOCOL_VERSION, "a version that libsdformat " + std::string(SDF_VERSION_FULL) + " knows, up to " + SDF_PROTOCOL_VERSION + "; what a later one added is not read"};
   constexpr std::string_view mark = ":<data-string>:L";
   const std::size_t at = printed.find(mark), end = at == std::string::npos ? at : printed.find("]: ", at);
   if (!begins(printed, "[") || end == std::string::npos) return {"<sdf>", printed};

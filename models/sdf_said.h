@@ -33,6 +33,7 @@ class SdfConsole {
 struct SdfSaid {
   std::string element;   ///< `joint "j" (line 4)`, as far as it is known
   std::string text;
+  std::string accepted = "see what it says";
 };
 
 /// The first cause and at most two more; of what follows from them nothing. `errors` has one entry or more, `root` is what was read.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,12 @@ bool is(const tinyxml2::XMLElement* e, std::string_view name) { return name == e
 bool idle_axis(const tinyxml2::XMLElement* e) {
   const tinyxml2::XMLElement* joint = e->Parent() == nullptr ? nullptr : e->Parent()->ToElement();
   return (is(e, "axis") || is(e, "axis2")) && joint != nullptr && is(joint, "joint") && joint->Attribute("type", "fixed") != nullptr;
+}
+
+/// From SDF 1.8 on; 1.10 is later than 1.9.
+bool has_scopes(const char* version) {
+  int major = 0, minor = 0;
+  return version != nullptr && std::sscanf(version, "%d.%d", &major, &minor) == 2 && (major > 1 || (major == 1 && minor >= 8));
 }
 
 class InLines : public tinyxml2::XMLPrinter {
@@ -64,9 +71,22 @@ std::string value_at(const tinyxml2::XMLElement& root, const std::string& kind, 
   return "";
 }
 
+std::set<int> links_of_automatic_inertia(const tinyxml2::XMLElement& root) {
+  std::set<int> out;
+  std::vector<const tinyxml2::XMLElement*> stack{&root};
+  while (!stack.empty()) {
+    const tinyxml2::XMLElement* e = stack.back();
+    stack.pop_back();
+    for (const tinyxml2::XMLElement* c = e->LastChildElement(); c; c = c->PreviousSiblingElement()) stack.push_back(c);
+    const tinyxml2::XMLElement* inertial = is(e, "link") ? e->FirstChildElement("inertial") : nullptr;
+    if (inertial != nullptr && inertial->BoolAttribute("auto")) out.insert(e->GetLineNum());
+  }
+  return out;
+}
+
 void check_sdf_words(const std::string& file, const tinyxml2::XMLElement& root) {
   static const std::vector<std::string> types{"ball", "continuous", "fixed", "gearbox", "prismatic", "revolute", "revolute2", "screw", "universal"};
-  const bool scopes = finite_number(root.Attribute("version") == nullptr ? "" : root.Attribute("version")).value_or(0) >= 1.8;
+  const bool scopes = has_scopes(root.Attribute("version"));
   std::vector<const tinyxml2::XMLElement*> stack{&root};
   while (!stack.empty()) {
     const tinyxml2::XMLElement* e = stack.back();

@@ -3,6 +3,7 @@
 
 #include <tinyxml2.h>
 
+#include <set>
 #include <string>
 
 namespace delassus {
@@ -16,6 +17,9 @@ void check_sdf_numbers(const std::string& file, const tinyxml2::XMLElement& root
 
 /// Names with "::", joint types that SDF does not have, joints without parent or child. @throws ModelError naming element, line and word.
 void check_sdf_words(const std::string& file, const tinyxml2::XMLElement& root);
+
+/// Lines of links with <inertial auto="true">, whose mass and inertia SDF 1.11 takes from densities and collision shapes.
+[[nodiscard]] std::set<int> links_of_automatic_inertia(const tinyxml2::XMLElement& root);
 
 /// The document printed with every element in the line that it has in the file: what a parser then says names that line.
 [[nodiscard]] std::string text_on_its_lines(const tinyxml2::XMLDocument& document);

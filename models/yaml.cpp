@@ -1,7 +1,10 @@
 #include "models/yaml.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "algorithms/errors/closest.h"
@@ -9,15 +12,48 @@
 #include "models/robot.h"
 
 namespace delassus {
+namespace {
+
+/// Where documents start, and what they hold first.
+class Documents : public YAML::EventHandler {
+ public:
+  std::vector<YAML::Mark> starts, contents;
+
+  void OnDocumentStart(const YAML::Mark& m) override { starts.push_back(m); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& m, YAML::anchor_t) override { hold(m); }
+  void OnAlias(const YAML::Mark& m, YAML::anchor_t) override { hold(m); }
+  void OnScalar(const YAML::Mark& m, const std::string&, YAML::anchor_t, const std::string&) override { hold(m); }
+  void OnSequenceStart(const YAML::Mark& m, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { hold(m); }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& m, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { hold(m); }
+  void OnMapEnd() override {}
+
+ private:
+  void hold(const YAML::Mark& m) {
+    if (contents.size() < starts.size()) contents.push_back(m);
+  }
+};
+
+/// Of the one document of a file. Before a comma at its start yaml-cpp finds empty documents without end, all in one place.
+YAML::Node only_document(const std::string& file) {
+  std::ifstream in(file);
+  YAML::Parser parser(in);
+  Documents found;
+  while (found.starts.size() < 2 && parser.HandleNextDocument(found)) {}
+  if (found.starts.size() < 2) return found.starts.empty() ? YAML::Node() : YAML::LoadFile(file);
+  if (found.starts[0].pos == found.starts[1].pos) throw YAML::ParserException(found.starts[0], "nothing can begin with a comma");
+  const YAML::Mark& second = found.contents.size() > 1 ? found.contents[1] : found.starts[1];
+  throw ModelError(file + ":" + std::to_string(second.line + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
+}
+
+}  // namespace
 
 Yaml Yaml::open(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw ModelError(file, "file", "cannot be read", "a scene file (.yaml); check the path");
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(file);
-    if (documents.size() > 1)
-      throw ModelError(file + ":" + std::to_string(std::max(documents[1].Mark().line, 0) + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
-    const Yaml root(file, "", documents.empty() ? YAML::Node() : documents[0], 1);
+    const Yaml root(file, "", only_document(file), 1);
     if (!root.is_map()) root.fail("the file holds no mapping", "keys of a scene: robots, boxes, ...; docs/scenes.md has them all");
     return root;
   } catch (const YAML::BadFile&) {

@@ -134,6 +134,8 @@ TEST(Refusals, of_scenes) {
       {"boxes: [", "yaml:1: YAML", "broken", "well-formed YAML", "indentation"},
       {"- 1\n", "yaml:1", "no mapping", "robots, boxes", "docs/scenes.md"},
       {boxes + "---\na: 1\n", "yaml:5", "a second document", "one document", "file of its own"},
+      {"," + boxes, "yaml:1", "nothing can begin with a comma", "well-formed YAML", "check brackets"},
+      {"---\n, 0.7]}}" + boxes, "yaml:2", "nothing can begin with a comma", "well-formed YAML", "check brackets"},
       {boxes + "grond: {z: 0}\n", "yaml:4: grond", "unknown key", "did you mean ground?", "docs/scenes.md"},
       {boxes + "ground: {z: 0}\nground: {z: 1}\n", "yaml:5: ground", "twice", "once", "take one"},
       {"ground: {z: 0}\n", "yaml:1", "nothing in the scene can move", "robots or boxes", "base: free"},

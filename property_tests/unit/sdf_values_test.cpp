@@ -219,5 +219,32 @@ TEST(SdfValues, armatures_and_limits_are_each_joint_s_own) {
   EXPECT_THROW((void)Placed(fixed, typed), ModelError);
 }
 
+// What later versions of SDF added is not known to libsdformat 12, which reads the rest and says so.
+TEST(SdfValues, of_later_versions_nothing_is_made_up) {
+  NEEDS_SDF;
+  const auto versioned = [](const std::string& version, const std::string& inside) { return "<sdf version='" + version + "'>\n<model name='m'>\n" + inside + "</model></sdf>"; };
+  const auto warned = [](const Placed& p) { return p.robot.warnings.size() == 1 ? p.robot.warnings[0].text : std::to_string(p.robot.warnings.size()) + " warnings"; };
+  const std::string link = "<link name='a'>" + sdf_inertial(2) + "</link>";
+  EXPECT_TRUE(Placed(versioned("1.6", link)).robot.warnings.empty());
+  for (const char* version : {"1.10", "9.9"}) {
+    const Placed p(versioned(version, link));
+    EXPECT_EQ(p.model.bodies[0].mass, 2);
+    for (const std::string& said : {std::string("<sdf version>"), "from SDF version " + std::string(version), std::string("read as 1.9"), std::string("what a later one added is not read")})
+      EXPECT_NE(warned(p).find(said), std::string::npos) << warned(p);
+  }
+  EXPECT_THROW((void)Placed(versioned("1.10", "<link name='a::b'>" + sdf_inertial(2) + "</link>")), ModelError) << "1.10 is later than 1.8";
+  // Mass and inertia of the shapes: refused where they enter M, by line; without <mass>, SDF's 1 kg is said.
+  const std::string shape = "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision>";
+  const std::string automatic = "<link name='a'><inertial auto='true'><density>500</density></inertial>" + shape + "</link>";
+  try {
+    (void)Placed(sdf(automatic));
+    ADD_FAILURE() << "1 kg made up";
+  } catch (const ModelError& e) {
+    for (const char* said : {"link \"a\" (line 4)", "auto=\"true\"", "<mass> [kg] and <inertia> [kg m^2]"}) EXPECT_NE(std::string(e.what()).find(said), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(Placed(sdf("<static>true</static>" + automatic)).model.dofs(), 0);
+  EXPECT_NE(warned(Placed(sdf("<link name='a'><inertial><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>"))).find("has no <mass>: SDF then takes 1 kg"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace delassus
