@@ -40,9 +40,9 @@ YAML::Node only_document(const std::string& file) {
   std::ifstream in(file);
   YAML::Parser parser(in);
   Documents found;
-  while (found.starts.size() < 2 && parser.HandleNextDocument(found)) {}
+  while (found.starts.size() < 3 && parser.HandleNextDocument(found)) {}
   if (found.starts.size() < 2) return found.starts.empty() ? YAML::Node() : YAML::LoadFile(file);
-  if (found.starts[0].pos == found.starts[1].pos) throw YAML::ParserException(found.starts[0], "nothing can begin with a comma");
+  if (found.starts.size() > 2 && found.starts[1].pos == found.starts[2].pos) throw YAML::ParserException(found.starts[1], "nothing can begin with a comma");
   const YAML::Mark& second = found.contents.size() > 1 ? found.contents[1] : found.starts[1];
   throw ModelError(file + ":" + std::to_string(second.line + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
 }
