@@ -42,26 +42,16 @@ Robot SdfBuilder::run() {
 void SdfBuilder::find_links() {
   for (std::size_t k = 0; k < file_.links.size(); ++k)
     if (!index_.emplace(file_.links[k].name, k).second) fail(file_.links[k].element, "the name is taken", "unique link names; rename one of the two");
-  for (JointRow& j : file_.joints) {
-    if (j.child == "world") turn_round(j);
+  for (const JointRow& j : file_.joints) {
     for (const std::string* end : {&j.parent, &j.child})
-      if (*end != "world" && !index_.count(*end)) {
+      if ((*end != "world" || end == &j.child) && !index_.count(*end)) {
         std::vector<std::string_view> names;
         for (const SdfDocument::Link& l : file_.links) names.push_back(l.name);
-        fail(j.element, "link " + in_quotes(*end) + " does not exist", did_you_mean(*end, names) + "a link of this file, or world; correct the name");
+        fail(j.element, "link " + in_quotes(*end) + " does not exist", did_you_mean(*end, names) + "a link of this file" + std::string(end == &j.child ? "" : ", or world") + "; correct the name");
       }
     const std::size_t axes = j.type == Type::fixed || j.type == Type::ball ? 0 : j.type == Type::universal || j.type == Type::revolute2 || j.type == Type::gearbox ? 2 : 1;
     if (j.axes.size() < axes) fail(j.element, "has " + std::to_string(j.axes.size()) + " axes", std::to_string(axes) + "; add <axis>" + (axes > 1 ? " and <axis2>" : ""));
   }
-}
-
-/// The world as parent: the motion is that of the link, so the axis turns round.
-void SdfBuilder::turn_round(JointRow& j) const {
-  std::swap(j.parent, j.child);
-  if (j.type == Type::fixed) return;
-  if (j.axes.size() != 1 || j.type == Type::screw) fail(j.element, "has the world as its child", "the world as parent; exchange <parent> and <child>");
-  SdfDocument::Axis& a = j.axes[0];
-  a.direction = -a.direction;
 }
 
 /// A link hangs on the first joint that has it as child, unless that closes a circle.

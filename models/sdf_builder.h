@@ -22,7 +22,6 @@ class SdfBuilder {
 
   // sdf.cpp
   void find_links();
-  void turn_round(JointRow& j) const;
   void choose_tree();
   void check_options() const;
   void place(const SdfDocument::Link& link, const Frame& frame);

@@ -88,5 +88,31 @@ TEST(Assembly, a_limit_broken_before_is_where_the_value_is) {
   EXPECT_EQ(t.assembly.beyond[0].limit, -0.5);
 }
 
+TEST(Assembly, an_upper_limit_broken_before_is_where_the_value_is) {
+  JointText further;  // j2 closes at -0.565, above both
+  further.limits = "lower=\"-0.9\" upper=\"-0.85\"";
+  const Scene s = scene_of(four_bar("upper.urdf", further), "j1: 1.0, j2: -0.7, j3: 1.7", point_loop, "hold: [r/j1]\n");
+  EXPECT_TRUE(has_warning(s, "limit broken by assembly"));
+  ASSERT_EQ(s.assembly.beyond.size(), 1u);
+  EXPECT_EQ(s.assembly.beyond[0].limit, -0.7);
+}
+
+// Two coupled slides pass their limits, which differ, at once: held there, they would close the loop and break the coupling.
+TEST(Assembly, limits_do_not_break_couplings) {
+  const auto slide = [](const std::string& name, const std::string& parent, const std::string& child, const std::string& limits) {
+    JointText j{name, parent, child};
+    j.type = "prismatic", j.axis = "1 0 0", j.limits = limits;
+    return joint(j);
+  };
+  const std::string urdf = write("slides.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + link("base") + link("one") + link("two") + link("end") +
+                                 slide("s1", "base", "one", "lower=\"-9\" upper=\"0.5\"") + slide("s2", "one", "two", "lower=\"-9\" upper=\"0.6\"") +
+                                 slide("s3", "base", "end", "lower=\"-9\" upper=\"9\"") + "</robot>\n");
+  const Scene s = scene_of(urdf, "s3: 2", "  - {kind: point, of: r/two, at: [0, 0, 0], to: r/end, to_at: [0, 0, 0]}\n  - {kind: coupling, terms: [{joint: r/s1, coefficient: 1}, {joint: r/s2, coefficient: -1}]}\n");
+  const double one = values(s, "one")[0], two = values(s, "two")[0], end = values(s, "end")[0];
+  EXPECT_LT(ratio(one - two, 4), 30) << one << " " << two;
+  EXPECT_LT(ratio(one + two - end, 4), 30);
+  EXPECT_LE(one, 0.5);
+}
+
 }  // namespace
 }  // namespace delassus

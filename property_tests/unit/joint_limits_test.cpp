@@ -3,6 +3,7 @@
 
 #include "property_tests/unit/four_bars.h"
 #include "property_tests/unit/path_sums.h"
+#include "property_tests/unit/sdf_text.h"
 
 namespace delassus {
 namespace {
@@ -40,6 +41,26 @@ TEST(JointLimits, are_rows_of_their_side) {
   const std::string free = four_bar("limit_free.urdf", endless);
   expect_refused([&] { (void)scene_of(free, "j1: 0.5", "  - {kind: joint_limit, joint: r/j2}\n"); }, {":4", "no such limit"});
   EXPECT_EQ(scene_of(free, "j1: 0.5", "  - {kind: joint_limit, robot: r}\n").damping.diagonal.size(), 6u);
+}
+
+// The first axis of a universal joint has both limits, the second a lower one only: infinity is no row.
+TEST(JointLimits, of_several_freedoms_are_each_their_own) {
+  NEEDS_SDF;
+  const std::string links = "<link name='a'>" + unit::sdf_inertial(1) + "</link><link name='b'>" + unit::sdf_inertial(1) + "</link>";
+  const std::string joint = "<joint name='j' type='universal'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz><limit><lower>-1</lower><upper>2</upper></limit></axis>"
+                            "<axis2><xyz>0 1 0</xyz><limit><lower>-3</lower></limit></axis2></joint>";
+  const std::string file = unit::write_sdf("universal.sdf", unit::sdf(links + joint));
+  const auto rows = [&](const std::string& more) {
+    return unit::constraint_jacobian(problem_of(scene_of(file, "", "  - {kind: joint_limit, joint: r/j" + more + "}\n")));
+  };
+  MatrixX<double> all = MatrixX<double>::Zero(3, 2);
+  all(0, 0) = 1, all(1, 0) = -1, all(2, 1) = 1;
+  EXPECT_EQ(rows(""), all);
+  EXPECT_EQ(rows(", side: lower"), all({0, 2}, Eigen::all));
+  EXPECT_EQ(rows(", side: upper"), all.row(1));
+  EXPECT_EQ(rows(", dof: 1"), all.row(2));
+  const Scene s = scene_of(file, "", "  - {kind: joint_limit, joint: r/j}\n");
+  EXPECT_EQ(s.model.constraints[2].name, "joint_limit r/j 1 lower");
 }
 
 }  // namespace

@@ -244,5 +244,40 @@ TEST(Meshes, say_how_far_their_hulls_are_cut) {
   EXPECT_THROW((void)warned("{detect: true, hull_vertices: 3}"), ModelError);
 }
 
+/// A box of 1 × 2 × 3 off the origin, stretched by other factors along each axis, on a link that is fixed to the first.
+TEST(Meshes, stand_stretched_where_their_link_puts_them) {
+  NEEDS_MESHES;
+  std::string text;
+  std::vector<V3> corners;
+  for (int k = 0; k < 8; ++k) corners.emplace_back(k & 1 ? 2 : 1, k & 2 ? 4 : 2, k & 4 ? 6 : 3), text += "v " + coordinates(corners.back()) + "\n";
+  for (const char* f : {"1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"}) text += "f " + std::string(f) + "\n";
+  write(temporary("scene/shapes/off.obj"), text);
+  const std::string inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+  const fs::path file = temporary("scene/off.urdf");
+  write(file, "<robot name='r'><link name='a'>" + inertial + "</link><link name='b'>" + inertial +
+        "<collision><origin xyz='0.25 0.5 -0.75' rpy='0.3 -0.4 0.5'/><geometry><mesh filename='shapes/off.obj' scale='0.5 0.25 0.75'/></geometry></collision></link>"
+        "<joint name='f' type='fixed'><parent link='a'/><child link='b'/><origin xyz='1 -2 0.5' rpy='-0.7 0.2 1.1'/></joint></robot>");
+  RobotOptions o;
+  o.file = file.string(), o.robot = "r";
+  Model model;
+  Robot robot = add_robot(model, o);
+  ASSERT_EQ(robot.meshes.size(), 1u);
+  robot.meshes[0].friction = 0.625;
+  Findings found(false);
+  add_hulls(model, robot, 64, 0.01, found);
+  ASSERT_EQ(model.bodies[0].shapes.size(), 1u);
+  const Shape& s = model.bodies[0].shapes[0];
+  EXPECT_EQ(s.friction, 0.625);
+  EXPECT_EQ(s.size, V3(0.25, 0.25, 1.125));
+  const Pose<double> at = Pose<double>{rotation_rpy({-0.7, 0.2, 1.1}), {1, -2, 0.5}} * Pose<double>{rotation_rpy({0.3, -0.4, 0.5}), {0.25, 0.5, -0.75}};
+  ASSERT_EQ(s.points->size(), 8u);
+  for (const V3& c : corners) {
+    const V3 expected = at.rotation * c.cwiseProduct(V3(0.5, 0.25, 0.75)) + at.translation;
+    double nearest = 1;
+    for (const V3& p : *s.points) nearest = std::min(nearest, (s.placement.rotation * p + s.placement.translation - expected).norm());
+    EXPECT_LT(nearest / (0x1p-53 * 8), 30) << c.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace delassus

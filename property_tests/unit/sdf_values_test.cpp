@@ -246,5 +246,16 @@ TEST(SdfValues, of_later_versions_nothing_is_made_up) {
   EXPECT_NE(warned(Placed(sdf("<link name='a'><inertial><inertia><ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial></link>"))).find("has no <mass>: SDF then takes 1 kg"), std::string::npos);
 }
 
+// libsdformat 12 has no such joint, whatever the version of the file; nothing here turns it round.
+TEST(SdfValues, the_world_is_no_child) {
+  NEEDS_SDF;
+  try {
+    (void)Placed(sdf("<link name='a'>" + sdf_inertial(1) + "</link><joint name='j' type='revolute'><parent>a</parent><child>world</child><axis><xyz>0 0 1</xyz></axis></joint>"));
+    ADD_FAILURE();
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find("invalid child link [world]"), std::string::npos) << e.what();
+  }
+}
+
 }  // namespace
 }  // namespace delassus
