@@ -44,6 +44,12 @@ bool begins_with_an_element(const std::string& file) {
   return false;
 }
 
+/// By what is in it, or by its name where nothing is.
+bool is_robot_s(const std::string& file) {
+  const std::string end = fs::path(file).extension().string();
+  return begins_with_an_element(file) || end == ".urdf" || end == ".sdf" || end == ".xml";
+}
+
 }  // namespace
 
 std::vector<std::string> scene_names() {
@@ -59,7 +65,7 @@ std::vector<std::string> scene_names() {
 Scene open_scene(const std::string& name, const SceneOptions& options) {
   std::error_code error;
   const bool file = fs::is_regular_file(name, error);
-  if (file && begins_with_an_element(name)) return load_robot(name, options);
+  if (file && is_robot_s(name)) return load_robot(name, options);
   if (options.base) throw ModelError("", "--base", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write base: in the robot's entry");
   if (options.armature) throw ModelError("", "--armature", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write armature: in the robot's entry");
   if (name.rfind("swimmer:", 0) == 0) {

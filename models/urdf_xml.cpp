@@ -100,6 +100,7 @@ XMLElement& load_xml(tinyxml2::XMLDocument& document, const std::string& file) {
   if (error == tinyxml2::XML_ERROR_FILE_NOT_FOUND || error == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
       error == tinyxml2::XML_ERROR_FILE_READ_ERROR)
     throw ModelError(file, "file", "cannot be read", "a robot's file; check the path");
+  if (error == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) throw ModelError(file, "file", "is empty", "<robot>, <mujoco> or <sdf>; check how it was written");
   if (error != tinyxml2::XML_SUCCESS)
     throw ModelError(file, "line " + std::to_string(document.ErrorLineNum()), "broken XML: " + std::string(document.ErrorName()),
                      "well-formed XML; close or quote what stands there, xmllint says more");

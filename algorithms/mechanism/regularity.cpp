@@ -63,13 +63,14 @@ struct Lost {
 };
 
 /// The first (from the tips) pivot at q that is lost in double precision, measured with its value before its joint's other
-/// pivots and its children's joints were eliminated. Of definite bodies only pivots that are not positive are lost.
-/// `sizes` with absolute inertias is given when some are indefinite: pivots are then measured with the whole subtree.
+/// pivots and its children's joints were eliminated. Of definite bodies only pivots that are not positive are lost, unless
+/// others are indefinite: `sizes` with absolute inertias is given then, and every pivot measured with its whole subtree.
 std::optional<Lost> first_lost_pivot(const Model& model, const Model* sizes, const std::vector<Own>& own, const VectorX<double>& at) {
   const VectorX<Quad> q = at.cast<Quad>();
   const Problem<Quad> p = kinematics<Quad>(model, q);
   const Structure& s = *p.structure;
   std::vector<Matrix6<Quad>> articulated = p.H, children = sizes ? kinematics<Quad>(*sizes, q).H : p.H;  // the latter: before the children's joints give way
+  const bool sound = sizes == nullptr;
   const Quad lost = Quad(30) * Quad(unit_roundoff<double>);
   for (Index i = s.bodies() - 1; i >= 0; --i) {
     const Matrix6<Quad> before = articulated[i];
@@ -81,7 +82,7 @@ std::optional<Lost> first_lost_pivot(const Model& model, const Model* sizes, con
       // The rounding in double of the sums a pivot is made from: below it an operator loses the pivot, whatever its sign.
       const Quad rounding = lost * p.S[k].cwiseAbs().dot(Vector6<Quad>(children[i].cwiseAbs() * p.S[k].cwiseAbs()));
       const bool negative = pivot < -(lost * whole + rounding);
-      if (negative || !(pivot > (kind == Kind::definite ? Quad(0) : lost * whole + rounding)))
+      if (negative || !(pivot > (sound && kind == Kind::definite ? Quad(0) : lost * whole + rounding)))
         return Lost{i, k - s.first_dof[i], static_cast<double>(pivot), static_cast<double>(whole), negative};
       articulated[i] -= u * u.transpose() / pivot;
     }
@@ -117,17 +118,17 @@ std::string described(const Own& own, const Body& body) {
   const std::string joint = body.joint.name.empty() ? "" : " (joint " + body.joint.name + ")";
   const std::string pivot = "its pivot of M is " + number_text(lost.pivot) + " of " + number_text(lost.whole) + " kg m^2 or kg";
   const std::string accepted = "armature above 0 on every degree of freedom";
-  if (!lost.negative)
-    throw ModelError(file, body.name, described(own[i], body) + " whose joint" + joint + " moves no inertia of its descendants: M is singular, " + pivot,
-                     "an inertia above 0 about every axis, massive descendants that its joint moves, or " + accepted + "; give the body an inertia, or the joint an armature");
   std::size_t culprit = i;
   for (std::size_t k = model.bodies.size(); k-- > i;) {
     Index up = static_cast<Index>(k);
     while (up > lost.body) up = model.bodies[static_cast<std::size_t>(up)].parent;
     if (up == lost.body && own[k].kind == Kind::indefinite) culprit = k;
   }
+  if (own[culprit].kind != Kind::indefinite)
+    throw ModelError(file, body.name, described(own[i], body) + " whose joint" + joint + " moves no inertia of its descendants: M is singular, " + pivot,
+                     "an inertia above 0 about every axis, massive descendants that its joint moves, or " + accepted + "; give the body an inertia, or the joint an armature");
   throw ModelError(file, model.bodies[culprit].name,
-                   described(own[culprit], model.bodies[culprit]) + ": M is indefinite, at " + body.name + joint + " " + pivot,
+                   described(own[culprit], model.bodies[culprit]) + (lost.negative ? ": M is indefinite, at " : ": M is singular, at ") + body.name + joint + " " + pivot,
                    "principal moments of 0 or more, or " + accepted + "; check the signs of the products of inertia and the axes they are in");
 }
 

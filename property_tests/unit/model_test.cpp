@@ -180,6 +180,16 @@ TEST(regularity, semidefinite_inertias_need_a_lever_arm_and_indefinite_ones_a_po
   EXPECT_NO_THROW(validate(arm({0.5, 0, 0}, {1, 1, -0.2}), "f"));  // 0.25 − 0.2
   expect_refusal([&] { validate(arm({0.5, 0, 0}, {1, 1, -0.3}), "f"); }, "M is indefinite");
   expect_refusal([&] { validate(arm({0.5, 0, 0}, {1, 1, -0.2}, JointType::floating), "f"); }, "M is indefinite");
+  // A sound body that floats, and one on it that takes all its inertia about one axis, wherever that turns to.
+  for (const double moment : {-1.0, -0.75}) {
+    Model pair = arm({0, 0, 0}, {1, 1, 1}, JointType::floating);
+    Body b = good_body("r/hand");
+    b.parent = 0, b.com.setZero(), b.inertia = Vector3<double>(moment, 1, 1).asDiagonal();
+    b.joint.type = JointType::revolute, b.joint.axis = {0, 0, 1}, b.joint.placement = {};
+    pair.add(b);
+    if (moment > -1) EXPECT_NO_THROW(validate(pair, "f"));
+    else expect_refusal([&] { validate(pair, "f"); }, "r/hand: body of 1 kg with the principal moments (-1 1 1) kg m^2: M is singular, at r/arm");
+  }
 }
 
 TEST(regularity, massless_bodies_need_armature_or_moved_inertia) {

@@ -96,6 +96,16 @@ TEST(RobotRefusals, urdf) {
   for (const std::string& part : {std::string("robot.urdf: r/b (line 3): "), ", read for " + scene + ":2: robots[0]"}) EXPECT_NE(said.find(part), std::string::npos) << said;
 }
 
+// Nothing in it says what it is; its name does.
+TEST(RobotRefusals, a_robot_s_file_without_an_element) {
+  for (const char* name : {"robot.urdf", "robot.sdf", "robot.xml"})
+    for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{{"", "is empty"}, {" \n", "is empty"}, {"hello", "broken XML"}, {std::string("\0", 1), "NUL"}}) {
+      const std::string file = written(name, text), said = message_of([&] { (void)open_scene(file); });
+      EXPECT_EQ(said.find(file + ": "), 0u) << said;
+      EXPECT_NE(said.find(part), std::string::npos) << said;
+    }
+}
+
 std::string sdf(const std::string& inside) {
   const std::string body = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>\n";
   return "<sdf version='1.9'><model name='m'>\n<link name='a'>" + body + "<link name='b'>" + body + inside + "</model></sdf>\n";
