@@ -9,9 +9,9 @@
 using namespace delassus;
 
 // [operator]
-// explicit_columns: A as a dense matrix, one articulated-body sweep per column; apply is a product.
+// swept_columns: A as a dense matrix, one articulated-body sweep per column; apply is a product.
 // Formula A e_j = J M⁻¹ Jᵀ e_j + R⁻¹ e_j.  Cost O(m (n + m)) per update, 2 m² per apply.  Error componentwise.
-template <class T> class ExplicitColumns : public Operator<T> {
+template <class T> class SweptColumns : public Operator<T> {
  protected:
   void do_analyze() override {
     const Index m = this->structure()->rows;
@@ -46,10 +46,10 @@ template <class T> class ExplicitColumns : public Operator<T> {
 // [operator]
 
 // [row]
-template <class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<ExplicitColumns<T>>(); }
+template <class T> std::unique_ptr<Operator<T>> make() { return std::make_unique<SweptColumns<T>>(); }
 
 const OperatorRow row = {
-    .name = "explicit_columns", .summary = "A as a dense matrix, one sweep per column", .formula = "A e_j, j = 1 … m",
+    .name = "swept_columns", .summary = "A as a dense matrix, one sweep per column", .formula = "A e_j, j = 1 … m",
     .source = "docs/adding_an_operator.md", .cost = "O(m (n + m))", .applies = true, .solves = false,
     .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
     .solve_error = ErrorClass::componentwise,

@@ -51,7 +51,9 @@ std::string cell_text(const Answered& cell, bool compared) {
 }
 
 /// Dense operators are left out where their matrix is too large to be of use.
-bool too_large(const OperatorRow& row, const Structure& s) { return row.name == "dense_cholesky" && s.dofs() > 1000; }
+bool too_large(const OperatorRow& row, const Structure& s) {
+  return (row.holds != Holds::sparse && s.rows > 1000) || (row.holds == Holds::all_squared && s.dofs() > 1000);
+}
 
 /// A row of text per operator: one cell per size.
 using Table = std::map<std::size_t, std::vector<std::string>>;

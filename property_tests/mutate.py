@@ -34,15 +34,15 @@ FILES = {
     "plan.cpp": "plans lcaba aba_sweep", "plan.h": "plans lcaba aba_sweep lcaba_refined",
     "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
     **dict.fromkeys(["factor.cpp", "factor_steps.cpp", "link_rows.cpp"], "kernels lcaba aba_sweep"), "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
-    "columns.h": "Columns lcaba aba_sweep lcaba_refined", "aba_sweep.cpp": "aba_sweep", "lcaba.cpp": "lcaba",
+    "columns.h": "Columns lcaba aba_sweep lcaba_refined",
     "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
-    "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined", "lcaba_refined.cpp": "lcaba_refined",
-    "ldlt.h": "dense_cholesky lcaba", "dense_cholesky.cpp": "dense_cholesky", "explicit.cpp": "dense_cholesky", "cg.cpp": "krylov cg cg_preconditioned",
+    "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined",
+    "ldlt.h": "dense_cholesky lcaba", "explicit.cpp": "dense_cholesky explicit_columns", **dict.fromkeys(["ltl.cpp", "branch_factor.cpp", "branch_rows.cpp", "branch_rows.h"], "ltl_osim ltl_kkt"), "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
     "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "damping.cpp": "lcaba aba_sweep",
     **dict.fromkeys(["weight_root.cpp", "weight_root.h", "mass_root.cpp", "front_plan.cpp", "householder.h", "square_root_factor.cpp",
-                     "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr"), "lcaba_qr.cpp": "lcaba_qr"}
+                     "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr")}
 
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
@@ -59,6 +59,9 @@ WAY_IN = {
     **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
     "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}
 FILES.update(WAY_IN)
+for source in sorted(os.listdir(os.path.join(ROOT, "algorithms", "operators"))):  # the rest: a file is called as the operator it is
+    if source.endswith(".cpp") and source != "operators.cpp":
+        FILES.setdefault(source, source[:-len(".cpp")])
 
 
 def killer_of(name):

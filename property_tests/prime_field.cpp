@@ -255,17 +255,8 @@ const Mechanism mechanisms[] = {
     {"contacts", 2000, [](Index n) { return family("contacts", n); }, "H", in_H},
 };
 
-/// Operators whose cost grows faster than a mechanism does: the part of every size they are given.
-constexpr struct {
-  std::string_view op;
-  Index divisor;
-} fast_growing[] = {{"dense_cholesky", 50}};
-
-Index bodies_for(const OperatorRow& op, Index bodies) {
-  for (const auto& row : fast_growing)
-    if (row.op == op.name) return bodies / row.divisor;
-  return bodies;
-}
+/// Operators whose cost grows faster than a mechanism does take a part of every size.
+Index bodies_for(const OperatorRow& op, Index bodies) { return op.holds == Holds::sparse ? bodies : bodies / 50; }
 
 /// Bound on the probability that a wrong identity of this problem holds.
 double survival(const Structure& s) {

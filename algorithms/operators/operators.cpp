@@ -7,11 +7,14 @@
 #include "algorithms/operators/aba_sweep.h"
 #include "algorithms/operators/cg.h"
 #include "algorithms/operators/dense_cholesky.h"
+#include "algorithms/operators/explicit_columns.h"
 #include "algorithms/operators/kkt_elimination.h"
 #include "algorithms/operators/ladder.h"
 #include "algorithms/operators/lcaba.h"
 #include "algorithms/operators/lcaba_qr.h"
 #include "algorithms/operators/lcaba_refined.h"
+#include "algorithms/operators/ltl_kkt.h"
+#include "algorithms/operators/ltl_osim.h"
 #include "algorithms/operators/proximal.h"
 
 namespace delassus {
@@ -56,7 +59,22 @@ const std::vector<OperatorRow>& operators() {
        .formula = "A = (J L⁻ᵀ) D⁻¹ (J L⁻ᵀ)ᵀ + R⁻¹, M = L D Lᵀ", .source = "paper, section II",
        .cost = "O(n³ + n² m + n m² + m³)", .applies = true, .solves = true, .zero_damping = true,
        .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise,
-       .makers = makers<DenseCholesky>()},
+       .holds = Holds::all_squared, .makers = makers<DenseCholesky>()},
+      {.name = "explicit_columns", .summary = "explicit matrix, one pair of articulated-body sweeps per row",
+       .formula = "A e_r, r = 1 … m", .source = "paper, Algorithms 1–3 merged (section IV-D)",
+       .cost = "O(n + m (n + m) + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<ExplicitColumns>()},
+      {.name = "ltl_osim", .summary = "explicit matrix by the branch sparsity of M, J and L",
+       .formula = "A = Y D⁻¹ Yᵀ + R⁻¹, Y = J L⁻¹, M = Lᵀ D L", .source = "Featherstone 2010 (paper's [21]); loops: algorithms/factors/branch_rows.h",
+       .cost = "O(n d² + m d² + m² d + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<LtlOsim>()},
+      {.name = "ltl_kkt", .summary = "the KKT system eliminated along the tree, its pattern known",
+       .formula = "[M −Jᵀ; J R⁻¹] = U D Uᵀ, rows first", .source = "Carpentier, Budhiraja, Mansard 2021 (paper's [22])",
+       .cost = "O(n d² + m d² + m² d + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<LtlKkt>()},
       {.name = "aba_sweep", .summary = "Delassus operator by two articulated-body sweeps",
        .formula = "a = J M⁻¹ Jᵀ f + R⁻¹ f", .source = "paper, Algorithms 1–3 merged (section IV-D)",
        .cost = "O(n + m)", .applies = true, .solves = false, .zero_damping = false, .terminates_exactly = true,
@@ -98,11 +116,11 @@ const std::vector<OperatorRow>& operators() {
        .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/operators/kkt_elimination.h",
        .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
        .decides_rank = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
-       .makers = ordered_makers<KktElimination>()},
+       .holds = Holds::rows_squared, .makers = ordered_makers<KktElimination>()},
       {.name = "dense_refined", .summary = "the same for regular A: a dense factor with refinement and certificate",
        .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/operators/kkt_elimination.h",
        .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
-       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .makers = ordered_makers<DenseRefined>()},
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .holds = Holds::rows_squared, .makers = ordered_makers<DenseRefined>()},
       {.name = "cg", .summary = "conjugate gradients on aba_sweep",
        .formula = "A f = a by Krylov iteration", .source = "Hestenes and Stiefel 1952",
        .cost = "O((n + m) √κ)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,

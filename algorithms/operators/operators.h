@@ -22,6 +22,13 @@ enum class ErrorClass : std::uint8_t {
 
 template <class T> using Maker = std::unique_ptr<Operator<T>> (*)();
 
+/// How what an operator holds grows with bodies n and rows m. Tests of thousands of bodies take fewer for what is dense.
+enum class Holds : std::uint8_t {
+  sparse,        ///< O(n + m) where loops are local
+  rows_squared,  ///< a dense matrix of m rows, and O(m³) operations
+  all_squared,   ///< also one of n degrees of freedom, and O(n³)
+};
+
 /// One row of the table of operators.
 struct OperatorRow {
   std::string_view name, summary, formula, source, cost;
@@ -33,6 +40,7 @@ struct OperatorRow {
   bool grows = false;         ///< allocates when it first needs a part of itself; never again
   double factor_eps = 0x1p-53;  ///< unit roundoff of the arithmetic its factor runs in: where 1/κ(A) is not far above it,
                                 ///< the operator may give up, and says so
+  Holds holds = Holds::sparse;
   std::tuple<Maker<double>, Maker<float>, Maker<Quad>, Maker<Counted>, Maker<Rational>,
              Maker<PrimeField>>
       makers;  ///< nullptr where a scalar is not served
