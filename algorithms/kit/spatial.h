@@ -14,6 +14,9 @@ template <class T> using Vector3 = Eigen::Matrix<T, 3, 1>;
 template <class T> using Matrix3 = Eigen::Matrix<T, 3, 3>;
 template <class T> using Vector6 = Eigen::Matrix<T, 6, 1>;
 template <class T> using Matrix6 = Eigen::Matrix<T, 6, 6>;
+// A program and the library share members of these types, whatever flags each was compiled with.
+static_assert(alignof(Matrix6<double>) == 16 && EIGEN_DEFAULT_ALIGN_BYTES == 64,
+              "compile with -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16, as delassus is (its CMake targets do)");
 template <class T> using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T> using MatrixX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 

@@ -13,7 +13,7 @@ template <class T> struct Three {
   T v[3];
   const T& operator[](int k) const { return v[k]; }
 };
-template <> struct Three<double> {
+template <> struct alignas(32) Three<double> {  // as with AVX: users hold it in a Mechanism
   Lanes4 v;
   double operator[](int k) const { return v[k]; }
 };
