@@ -115,7 +115,7 @@ std::string residual_wrong(const Exact& e) {
   const MatrixX<X> left = MatrixX<X>(r2 - product<X>(e.J, nu)) - product<X>(e.R_inverse, lambda), given = r1;
   std::vector<X> work(static_cast<std::size_t>(residual.workspace()));
   const MatrixX<X> r2_0 = r2;
-  residual.evaluate(nu.data(), lambda.data(), nullptr, r2_0.data(), r1.data(), r2.data(), work.data());
+  residual.evaluate(nu.data(), lambda.data(), static_cast<const X*>(nullptr), r2_0.data(), r1.data(), r2.data(), work.data());
   if (!equal(r1, motion) || !equal(r2, left)) return "residual from (0, a)";
   r1 = given;
   r2 = r2_0;

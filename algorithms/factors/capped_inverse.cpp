@@ -67,29 +67,48 @@ template <class T, class F> Report CappedInverse<T, F>::update_damping(const Dam
   return factor_.update_weights(narrow_weights_);
 }
 
+namespace {
+/// X in F, and back.
+template <class F, class X> auto rounded(const X& x) {
+  if constexpr (columns_in<X> == 1) return static_cast<F>(x);
+  else if constexpr (std::is_same_v<F, float>) return narrowed(x);
+  else return x;
+}
+template <class X, class Y> X restored(const Y& x) {
+  if constexpr (columns_in<X> == 1) return X(x);
+  else if constexpr (std::is_same_v<Y, Lanes8f>) return widened(x);
+  else return x;
+}
+}  // namespace
+
 // A narrow F works on residuals scaled to about 1: 1e-50 must not vanish in float.
 template <class T, class F>
-void CappedInverse<T, F>::solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
-  using std::abs;
+template <class X>
+void CappedInverse<T, F>::solve_kkt(const X* r1, const X* r2, X* d_nu, X* d_lambda, X* work) const {
+  using Y = decltype(rounded<F>(X{}));
   const Index n = structure_->dofs(), m = structure_->rows;
-  F* const tau = reinterpret_cast<F*>(work);
-  F* const nu = tau + padded(n);
-  F* const right = nu + padded(n);
-  F* const rate = right + padded(m);
-  F* const force = rate + padded(m);
-  F* const inner = force + padded(m);
-  T size(0);
-  for (Index c = 0; c < n && r1 != nullptr; ++c) size = std::max(size, T(abs(r1[c]) / unit_));
-  for (Index r = 0; r < m; ++r) size = std::max(size, T(abs(r2[r])));
-  const T scale = power_of_two_below<T, F>(size);
-  for (Index c = 0; c < n; ++c) tau[c] = r1 != nullptr ? static_cast<F>(T(r1[c] / unit_ / scale)) : F(0);
-  for (Index r = 0; r < m; ++r) right[r] = static_cast<F>(T(r2[r] / scale));
+  Y* const tau = reinterpret_cast<Y*>(work);
+  Y* const nu = tau + padded(n);
+  Y* const right = nu + padded(n);
+  Y* const rate = right + padded(m);
+  Y* const force = rate + padded(m);
+  Y* const inner = force + padded(m);
+  X scale{};  // powers of two
+  for (int l = 0; l < columns_in<X>; ++l) {
+    using std::abs;
+    T size(0);
+    for (Index c = 0; c < n && r1 != nullptr; ++c) size = std::max(size, T(abs(T(lane(r1[c], l))) / unit_));
+    for (Index r = 0; r < m; ++r) size = std::max(size, T(abs(T(lane(r2[r], l)))));
+    set_lane(scale, l, power_of_two_below<T, F>(size));
+  }
+  for (Index c = 0; c < n; ++c) tau[c] = r1 != nullptr ? rounded<F>(X(r1[c] / unit_ / scale)) : Y{};
+  for (Index r = 0; r < m; ++r) right[r] = rounded<F>(X(r2[r] / scale));
   narrow_weights_.multiply(right, force);
   factor_.solve(force, tau, rate, nu, inner);
   for (Index r = 0; r < m; ++r) rate[r] = right[r] - rate[r];
   narrow_weights_.multiply(rate, force);
-  for (Index c = 0; c < n && d_nu != nullptr; ++c) d_nu[c] = T(nu[c]) * scale;
-  for (Index r = 0; r < m; ++r) d_lambda[r] = T(force[r]) * scale * unit_;
+  for (Index c = 0; c < n && d_nu != nullptr; ++c) d_nu[c] = restored<X>(nu[c]) * scale;
+  for (Index r = 0; r < m; ++r) d_lambda[r] = restored<X>(force[r]) * scale * unit_;
 }
 
 template <class T, class F> Index CappedInverse<T, F>::workspace() const {
@@ -104,11 +123,14 @@ template <class T, class F> Index CappedInverse<T, F>::bytes() const {
                             omega_.size() * sizeof(SixBySix<T>));
 }
 
-#define DELASSUS_INSTANTIATE(T) template class CappedInverse<T, T>;
+#define DELASSUS_INSTANTIATE(T) template class CappedInverse<T, T>; template void CappedInverse<T, T>::solve_kkt(const T*, const T*, T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR_WITH_ROOTS(DELASSUS_INSTANTIATE)
 #undef DELASSUS_INSTANTIATE
 #ifndef DELASSUS_EXACT
 template class CappedInverse<double, float>;
+template void CappedInverse<double, float>::solve_kkt(const double*, const double*, double*, double*, double*) const;
+template void CappedInverse<double, float>::solve_kkt(const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
+template void CappedInverse<double, double>::solve_kkt(const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
 #endif
 
 }  // namespace delassus

@@ -23,8 +23,9 @@ template <class T, class F> class CappedInverse {
   /// `M` is the factor of M at the same configuration.
   [[nodiscard]] Report update(const Problem<T>& problem, const Factor<T>& M);
   [[nodiscard]] Report update_damping(const Damping<T>& damping);
-  /// Shapes n, m, n, m; `work` needs workspace() scalars T. r1 may be nullptr (zero) and d_nu nullptr (not wanted).
-  void solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
+  /// Shapes n, m, n, m of X, which is T or lanes of T; `work` needs workspace() values X. r1 may be nullptr (zero) and d_nu nullptr
+  /// (not wanted).
+  template <class X> void solve_kkt(const X* r1, const X* r2, X* d_nu, X* d_lambda, X* work) const;
 
   [[nodiscard]] Index workspace() const;
   [[nodiscard]] Index bytes() const;

@@ -18,74 +18,57 @@ template <class T> void add_square(T* w, const T* k, const T* q, const T& weight
 template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan) {
   structure_ = &s;
   plan_ = &plan;
-  const std::size_t columns = static_cast<std::size_t>(plan.first_column.back());
-  const std::size_t steps = static_cast<std::size_t>(plan.steps), active = static_cast<std::size_t>(plan.active());
-  s_.assign(columns, Six<T>::zero());
-  d_inverse_.assign(columns, T(0));
-  armature_ = shift_ = d_inverse_;
-  w_.assign(static_cast<std::size_t>(plan.first_w.back()), Six<T>::zero());
-  vector_of_.assign(steps, -1);
+  const auto size = [](Index n) { return static_cast<std::size_t>(n); };
+  const std::size_t steps = size(plan.steps), active = size(plan.active()), columns = size(plan.first_column.back());
+  lists_.divide(-1, {{&vector_of_, steps}, {&first_child_, steps}, {&next_child_, steps}, {&first_joint_rows_, active + 1}, {&joint_weight_of_, active}});
+  fills_.divide(never, {{&filled_, steps}});
   int vectors = 0, largest = 0;
   for (int i = 0; i < plan.steps; ++i) {
     if (plan.first_column[i + 1] - plan.first_column[i] > 1) vector_of_[i] = 6 * std::exchange(vectors, vectors + 1);
     largest = std::max(largest, plan.first_w[i + 1] - plan.first_w[i]);
   }
-  e_.assign(static_cast<std::size_t>(6 * vectors), Six<T>::zero());
-  s0_ = e_;
-  own_.assign(plan.matrix == Matrix::M_R ? active : 0, SixBySix<T>::zero());
-  inertia_.assign(steps, SixBySix<T>::zero());
-  block_.assign(static_cast<std::size_t>(plan.blocks), SixBySix<T>::zero());
-  unscaled_.assign(static_cast<std::size_t>(largest), Six<T>::zero());
-  links_.analyze(s, plan);
-  joint_k0_.assign(static_cast<std::size_t>(s.joint_K_size), T(0));
-  joint_k_ = joint_k0_;
   find_sources();
+  links_.analyze(s, plan);
+  const std::size_t joint_k = size(s.joint_K_size), joint_weights = size(analyze_joint_rows());
+  scalars_.divide(T(0), {{&d_inverse_, columns}, {&armature_, columns}, {&shift_, columns}, {&joint_k0_, joint_k}, {&joint_k_, joint_k}, {&joint_weight_, joint_weights}});
+  sixes_.divide(Six<T>::zero(), {{&s_, columns}, {&w_, size(plan.first_w.back())}, {&s0_, size(6 * vectors)}, {&e_, size(6 * vectors)}, {&unscaled_, size(largest)}});
+  matrices_.divide(SixBySix<T>::zero(), {{&own_, plan.matrix == Matrix::M_R ? active : 0}, {&inertia_, steps}, {&block_, size(plan.blocks)}});
+}
 
+// The sum of n_i² of the joints of several degrees of freedom with rows.
+template <class T> int Factor<T>::analyze_joint_rows() {
+  const Plan& plan = *plan_;
   joint_rows_.clear();
-  joint_weight_of_.assign(active, -1);
+  joint_rows_.reserve(structure_->joint_constraints.size());
   int weights = 0;
-  Index constraint = static_cast<Index>(s.link_constraints.size());
-  for (const auto& j : s.joint_constraints) {
+  Index constraint = static_cast<Index>(structure_->link_constraints.size());
+  for (const auto& j : structure_->joint_constraints) {
     const int i = plan.step[j.body], step = i - plan.first_active, n = plan.first_column[i + 1] - plan.first_column[i];
     joint_rows_.push_back({step, plan.first_column[i] - plan.first_column[plan.first_active], n, j.row, j.rows, j.first, constraint++});
     if (n > 1 && joint_weight_of_[step] < 0) joint_weight_of_[step] = std::exchange(weights, weights + n * n);
   }
   std::stable_sort(joint_rows_.begin(), joint_rows_.end(),
                    [](const JointRows& a, const JointRows& b) { return a.step < b.step; });
-  first_joint_rows_.assign(active + 1, 0);
+  std::fill(first_joint_rows_.begin(), first_joint_rows_.end(), 0);
   for (const JointRows& j : joint_rows_) ++first_joint_rows_[j.step + 1];
-  for (std::size_t i = 0; i < active; ++i) first_joint_rows_[i + 1] += first_joint_rows_[i];
-  joint_weight_.assign(static_cast<std::size_t>(weights), T(0));
+  for (std::size_t i = 1; i < first_joint_rows_.size(); ++i) first_joint_rows_[i] += first_joint_rows_[i - 1];
+  return weights;
 }
 
 // Where H_ii comes from when step i runs: a simple step leaves its part with itself for the parent to take, any other adds to
 // inertia_ of its members, which must have been filled before.
 template <class T> void Factor<T>::find_sources() {
   const Plan& plan = *plan_;
-  filled_.assign(static_cast<std::size_t>(plan.steps), 0);
-  for (int i = 0; i < plan.steps; ++i) filled_[i] = !kept(i);
+  for (int i = 0; i < plan.steps; ++i)
+    if (!kept(i)) filled_[i] = from_the_start;
   if (plan.matrix == Matrix::M_R)
     for (const auto& e : structure_->link_constraints)
-      for (const auto& link : e.links) filled_[plan.step[link.body]] = 1;
-  const std::vector<char> filled_anyway = filled_;
-  first_child_.assign(static_cast<std::size_t>(plan.steps) + 1, 0);
-  early_.clear();
-  copied_.clear();
-  const auto handed = [&](int i) { return plan.simple(i) && (i < plan.first_active) == (plan.parent[i] < plan.first_active); };
-  for (int i = 0; i < plan.steps; ++i) {
-    if (!plan.simple(i))
-      for (int k = plan.first_member[i]; k < plan.first_member[i + 1]; ++k) filled_[plan.members[k].step] = 1;
-    else if (handed(i)) ++first_child_[plan.parent[i] + 1];
-    else early_.push_back(i);
+      for (const auto& link : e.links) filled_[plan.step[link.body]] = with_rows;
+  for (int i = plan.steps; i-- > 0;) {
+    if (waits(i)) next_child_[i] = std::exchange(first_child_[plan.parent[i]], i);
+    for (int k = plan.first_member[i]; !plan.simple(i) && k < plan.first_member[i + 1]; ++k)
+      if (Filled& filled = filled_[plan.members[k].step]; filled == never) filled = by_a_copy;
   }
-  for (int i = 0; i < plan.steps; ++i) {
-    first_child_[i + 1] += first_child_[i];
-    if (filled_[i] && !filled_anyway[i]) copied_.push_back(i);
-  }
-  children_.assign(static_cast<std::size_t>(first_child_.back()), 0);
-  std::vector<int> at(first_child_.begin(), first_child_.end() - 1);
-  for (int i = 0; i < plan.steps; ++i)
-    if (plan.simple(i) && handed(i)) children_[at[plan.parent[i]]++] = i;
 }
 
 template <class T> Report Factor<T>::start(const Problem<T>& problem) {
@@ -101,14 +84,15 @@ template <class T> Report Factor<T>::start(const Problem<T>& problem) {
   }
   load_rows(problem);
   const Report report = eliminate(0, plan_->first_active);
-  for (const int i : early_) add(given(plan_->parent[i]), inertia_[i]);
+  for (int i = 0; i < plan_->first_active; ++i)
+    if (plan_->simple(i) && !waits(i)) add(given(plan_->parent[i]), inertia_[i]);
   return report;
 }
 
 template <class T> void Factor<T>::load_rows(const Problem<T>& problem) {
   links_.load(problem);
   std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
-  joint_k_ = joint_k0_;
+  std::copy(joint_k0_.begin(), joint_k0_.end(), joint_k_.begin());
 }
 
 template <class T> void Factor<T>::move_rows(const Problem<T>& problem) {
@@ -124,7 +108,8 @@ template <class T> Report Factor<T>::update_weights(const BlockDiagonal<T>& weig
 // Alg. 4, lines 2–11: constraint inertias, couplings, joint weights.
 template <class T> void Factor<T>::add_weights(const BlockDiagonal<T>& weights) {
   std::fill(block_.begin(), block_.end(), SixBySix<T>::zero());
-  for (const int i : copied_) inertia_[i] = given(i);
+  for (int i = plan_->first_active; i < plan_->steps; ++i)
+    if (filled_[i] == by_a_copy) inertia_[i] = given(i);
   links_.add_weights(weights, own_.data(), inertia_.data() + plan_->first_active, block_.data());
   add_joint_weights(weights);
 }
@@ -162,13 +147,8 @@ template <class T> Index Factor<T>::workspace() const { return 8 * plan_->active
 template <class T> Index Factor<T>::solve_workspace() const { return 8 * plan_->steps + (plan_->first_column[plan_->steps] + 7) / 8 * 8; }
 
 template <class T> Index Factor<T>::bytes() const {
-  const auto sixes = s_.size() + s0_.size() + e_.size() + w_.size() + unscaled_.size();
-  const auto blocks = own_.size() + inertia_.size() + block_.size();
-  const auto scalars = d_inverse_.size() + armature_.size() + shift_.size() + joint_k0_.size() + joint_k_.size() + joint_weight_.size();
-  const auto ints = vector_of_.size() + copied_.size() + first_child_.size() + children_.size() + early_.size() +
-                    first_joint_rows_.size() + joint_weight_of_.size();
-  return links_.bytes() + static_cast<Index>(sixes * sizeof(Six<T>) + blocks * sizeof(SixBySix<T>) + scalars * sizeof(T) +
-                                             joint_rows_.size() * sizeof(JointRows) + filled_.size() + ints * sizeof(int));
+  return links_.bytes() + sixes_.bytes() + scalars_.bytes() + matrices_.bytes() + lists_.bytes() + fills_.bytes() +
+         static_cast<Index>(joint_rows_.size() * sizeof(JointRows));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class Factor<T>;

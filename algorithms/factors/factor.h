@@ -17,6 +17,7 @@
 #pragma once
 
 #include "algorithms/factors/link_rows.h"
+#include "algorithms/kit/slab.h"
 
 namespace delassus {
 
@@ -37,10 +38,10 @@ template <class T> class Factor {
   template <class V> void project(const V* x, V* y, V* work) const;
 
   /// y = J ν, ν = M_R⁻¹ (Jᵀ x + τ), of every joint. τ and ν in the problem's order of degrees of freedom; τ = nullptr: zero.
-  /// `work` needs solve_workspace() scalars.
-  void solve(const T* x, const T* tau, T* y, T* nu, T* work) const;
+  /// `work` needs solve_workspace() values of V.
+  template <class V> void solve(const V* x, const V* tau, V* y, V* nu, V* work) const;
   /// τᵀ M_R⁻¹ τ, by the backward sweep alone; `work` as for solve.
-  [[nodiscard]] T energy(const T* tau, T* work) const;
+  template <class V> [[nodiscard]] V energy(const V* tau, V* work) const;
 
   /// z with xᵀ J M⁻¹Jᵀ x' = Σ z_c z'_c / inverse_pivots()[c], c < columns(), by the backward sweep alone.
   void half(const T* x, T* z, T* work) const;
@@ -62,11 +63,13 @@ template <class T> class Factor {
  private:
   template <class> friend class FactorView;  // reads intermediate numbers: property_tests/digits.cpp
 
+  enum Filled : int { never, from_the_start, with_rows, by_a_copy };  // how inertia_ of a step gets its numbers before it runs
   struct JointRows {
     int step, column, dofs;  // from the first active step and column
     Index row, rows, first, constraint;
   };
 
+  int analyze_joint_rows();
   void find_sources();
   void load_rows(const Problem<T>& problem);
   void into_basis(int step);
@@ -82,43 +85,50 @@ template <class T> class Factor {
   [[nodiscard]] SixBySix<T> inertia(int i) const;
   /// Where start leaves H_ii.
   [[nodiscard]] SixBySix<T>& given(int i) { return kept(i) ? own_[i - plan_->first_active] : inertia_[i]; }
+  /// Step i hands its part to a parent of its own phase, which takes it when it runs.
+  [[nodiscard]] bool waits(int i) const {
+    return plan_->simple(i) && (i < plan_->first_active) == (plan_->parent[i] < plan_->first_active);
+  }
   /// Step i runs again with every damping.
   [[nodiscard]] bool kept(int i) const { return plan_->matrix == Matrix::M_R && i >= plan_->first_active; }
 
   template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
-  void add_torques(const T* tau, T* u) const;
+  template <class V> void add_torques(const V* tau, V* u) const;
   Matrix6<T> mobility(int i, SixBySix<T>* omega) const;
-  void velocities(const T* u, T* nu) const;
+  template <class V> void velocities(const V* u, V* nu) const;
   // f and u begin at the first active step and column; those of phase A stand before them.
   template <class V> void backward(Plan::Runs runs, Six<V>* f, V* u) const;
   template <class V> void forward(Plan::Runs runs, Six<V>* f, V* u) const;
-  struct Whole;  // f and u of every step
+  template <class V> struct Whole;  // f and u of every step
   template <class V> void gather(const Six<V>* f, const V* u, V* y) const;
 
   const Structure* structure_ = nullptr;
   const Plan* plan_ = nullptr;
   // Everything below is in sweep order (steps, then their columns).
-  std::vector<Six<T>> s_;            // S_i E_i, per column
-  std::vector<T> d_inverse_;         // 1/D, per column
-  std::vector<Six<T>> w_;            // W_j D⁻¹, per step, member, column
-  std::vector<int> vector_of_;       // per step: its six columns in s0_ and e_, −1: one degree of freedom or none
-  std::vector<Six<T>> s0_, e_;       // S_i, and the columns of E_i
-  std::vector<T> armature_, shift_;  // per column; with 𝒦ᵢᵀ R 𝒦ᵢ where the joint has one degree of freedom
-  std::vector<SixBySix<T>> own_;     // of M_R, per active step: H_ii before weights, with what phase A adds
-  std::vector<SixBySix<T>> inertia_; // of filled steps H_ii without their children's parts until the step runs; then its own part
-  std::vector<SixBySix<T>> block_;   // couplings H_ij
-  std::vector<Six<T>> unscaled_;     // scratch: W_j of one step
-  std::vector<char> filled_;         // per step
-  std::vector<int> copied_;          // filled steps without rows
-  std::vector<int> first_child_, children_;  // per step, those it takes inertia_ from: simple, of the same phase
-  std::vector<int> early_;           // steps of phase A with an active parent
+  std::span<Six<T>> s_;             // S_i E_i, per column
+  std::span<Six<T>> w_;             // W_j D⁻¹, per step, member, column
+  std::span<Six<T>> s0_, e_;        // S_i, and the columns of E_i, of joints of several degrees of freedom
+  std::span<Six<T>> unscaled_;      // scratch: W_j of one step
+  std::span<T> d_inverse_;          // 1/D, per column
+  std::span<T> armature_, shift_;   // per column; with 𝒦ᵢᵀ R 𝒦ᵢ where the joint has one degree of freedom
+  std::span<T> joint_k0_, joint_k_; // 𝒦_i and 𝒦_i E_i
+  std::span<T> joint_weight_;       // 𝒦ᵢᵀ R 𝒦ᵢ, n_i × n_i, of joints of several degrees of freedom with rows
+  std::span<SixBySix<T>> own_;      // of M_R, per active step: H_ii before weights, with what phase A adds
+  std::span<SixBySix<T>> inertia_;  // of filled steps H_ii without their children's parts until the step runs; then its own part
+  std::span<SixBySix<T>> block_;    // couplings H_ij
+  std::span<int> vector_of_;        // per step: its six columns in s0_ and e_, −1: one degree of freedom or none
+  std::span<Filled> filled_;        // per step
+  std::span<int> first_child_, next_child_;  // per step, those it takes inertia_ from (simple, of the same phase), −1 at the end
+  std::span<int> first_joint_rows_; // per active step
+  std::span<int> joint_weight_of_;  // per active step, −1: none
 
-  LinkRows<T> links_;                   // the K_e^i
-  std::vector<T> joint_k0_, joint_k_;   // 𝒦_i and 𝒦_i E_i
-  std::vector<JointRows> joint_rows_;   // ascending by step
-  std::vector<int> first_joint_rows_;   // per active step
-  std::vector<T> joint_weight_;         // 𝒦ᵢᵀ R 𝒦ᵢ, n_i × n_i, of joints with rows
-  std::vector<int> joint_weight_of_;    // per active step, −1: none
+  LinkRows<T> links_;                  // the K_e^i
+  std::vector<JointRows> joint_rows_;  // ascending by step
+  Slab<Six<T>> sixes_;
+  Slab<T> scalars_;
+  Slab<SixBySix<T>> matrices_;
+  Slab<int> lists_;
+  Slab<Filled> fills_;
 };
 
 }  // namespace delassus

@@ -15,8 +15,8 @@ template <class T> T reciprocal(const T& pivot) {
 
 // H_ii as it is when step i runs.
 template <class T> [[gnu::always_inline]] inline SixBySix<T> Factor<T>::inertia(int i) const {
-  SixBySix<T> H = copied(filled_[i] ? inertia_[i] : own_[i - plan_->first_active]);
-  for (int k = first_child_[i]; k < first_child_[i + 1]; ++k) add(H, inertia_[children_[k]]);
+  SixBySix<T> H = copied(filled_[i] != never ? inertia_[i] : own_[i - plan_->first_active]);
+  for (int k = first_child_[i]; k >= 0; k = next_child_[k]) add(H, inertia_[k]);
   return H;
 }
 

@@ -48,9 +48,9 @@ template <class T> template <class V> struct KktResidual<T>::Buffers {
   Six<V> *acceleration, *force;  // a_i, F_i per body
   V *damped, *torque;            // R⁻¹λ; what of r₁ is not S_iᵀF_i
 
-  Buffers(const Structure& s, T* work) {
+  template <class X> Buffers(const Structure& s, X* work) {
     const auto past = reinterpret_cast<std::uintptr_t>(work) % alignof(Six<V>);  // Wide<float> asks for more than float
-    acceleration = reinterpret_cast<Six<V>*>(past == 0 ? work : work + (alignof(Six<V>) - past) / sizeof(T));
+    acceleration = reinterpret_cast<Six<V>*>(past == 0 ? work : work + (alignof(Six<V>) - past) / sizeof(X));
     force = acceleration + s.bodies();
     damped = reinterpret_cast<V*>(force + s.bodies());
     torque = damped + s.rows;
@@ -58,13 +58,13 @@ template <class T> template <class V> struct KktResidual<T>::Buffers {
 };
 
 template <class T>
-template <class V>
-void KktResidual<T>::evaluate(const V* nu, const V* lambda, const T* r1_0, const T* r2_0, T* r1, T* r2, T* work) const {
+template <class V, class X>
+void KktResidual<T>::evaluate(const V* nu, const V* lambda, const X* r1_0, const X* r2_0, X* r1, X* r2, X* work) const {
   Buffers<V> b(*structure_, work);
   outward(nu, b);
   damping_.multiply(lambda, b.damped);
   link_rows(lambda, r2_0, r2, b);
-  for (std::size_t c = 0; c < s_.size(); ++c) b.torque[c] = V(r1_0 == nullptr ? T(0) : r1_0[c]) - nu[c] * armature_[c];
+  for (std::size_t c = 0; c < s_.size(); ++c) b.torque[c] = V(r1_0 == nullptr ? X{} : r1_0[c]) - nu[c] * armature_[c];
   joint_rows(nu, lambda, r2_0, r2, b);
   damping_.switch_off(r2);
   inward(r1, b);
@@ -83,8 +83,8 @@ template <class T> template <class V> void KktResidual<T>::outward(const V* nu, 
 
 // r₂ = r₂⁰ − R⁻¹λ − Σ K_e^i a_i;  F_i += K_eᵀλ_e
 template <class T>
-template <class V>
-void KktResidual<T>::link_rows(const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const {
+template <class V, class X>
+void KktResidual<T>::link_rows(const V* lambda, const X* r2_0, X* r2, Buffers<V>& b) const {
   for (const auto& e : structure_->link_constraints)
     for (Index first = 0; first < e.rows; first += 4) {
       const Index count = std::min<Index>(4, e.rows - first);
@@ -104,14 +104,14 @@ void KktResidual<T>::link_rows(const V* lambda, const T* r2_0, T* r2, Buffers<V>
       }
       V sum[4];
       sums(p, sum, count);
-      for (Index r = 0, row = e.row + first; r < count; ++r, ++row) r2[row] = narrow<T>(V(r2_0[row]) - b.damped[row] - sum[r]);
+      for (Index r = 0, row = e.row + first; r < count; ++r, ++row) r2[row] = narrow<X>(V(r2_0[row]) - b.damped[row] - sum[r]);
     }
 }
 
 // r₂ = r₂⁰ − R⁻¹λ − 𝒦ᵢ ν_i;  + 𝒦ᵢᵀλ
 template <class T>
-template <class V>
-void KktResidual<T>::joint_rows(const V* nu, const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const {
+template <class V, class X>
+void KktResidual<T>::joint_rows(const V* nu, const V* lambda, const X* r2_0, X* r2, Buffers<V>& b) const {
   for (const auto& j : structure_->joint_constraints) {
     const Index first = structure_->first_dof[j.body], n = structure_->dofs(j.body);
     for (Index r = 0; r < j.rows; ++r) {
@@ -121,13 +121,13 @@ void KktResidual<T>::joint_rows(const V* nu, const V* lambda, const T* r2_0, T* 
         residual -= nu[first + c] * k;
         b.torque[first + c] += lambda[j.row + r] * k;
       }
-      r2[j.row + r] = narrow<T>(residual);
+      r2[j.row + r] = narrow<X>(residual);
     }
   }
 }
 
 // F_π += F_i;  r₁ = r₁⁰ + S_iᵀF_i + 𝒦ᵢᵀλ − A_i ν_i
-template <class T> template <class V> void KktResidual<T>::inward(T* r1, Buffers<V>& b) const {
+template <class T> template <class V, class X> void KktResidual<T>::inward(X* r1, Buffers<V>& b) const {
   const Structure& s = *structure_;
   for (Index i = s.bodies(); i-- > 0;)
     if (s.parent[i] != ground) add(b.force[s.parent[i]], b.force[i]);
@@ -137,7 +137,7 @@ template <class T> template <class V> void KktResidual<T>::inward(T* r1, Buffers
     for (Index r = 0; r < count; ++r) p[r] = product(s_[first + r], b.force[body_of_[first + r]]);
     V sum[4];
     sums(p, sum, count);
-    for (Index r = 0; r < count; ++r) r1[first + r] = narrow<T>(sum[r] + b.torque[first + r]);
+    for (Index r = 0; r < count; ++r) r1[first + r] = narrow<X>(sum[r] + b.torque[first + r]);
   }
 }
 
@@ -164,6 +164,8 @@ DELASSUS_INSTANTIATE_WIDE(Quad)
 #else
 DELASSUS_INSTANTIATE_WIDE(double)
 DELASSUS_INSTANTIATE_WIDE(float)
+template void KktResidual<double>::evaluate(const Lanes8*, const Lanes8*, const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
+template void KktResidual<double>::evaluate(const Wide<Lanes8>*, const Wide<Lanes8>*, const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
 #endif
 
 }  // namespace delassus

@@ -28,9 +28,9 @@ template <class T> class KktResidual {
   [[nodiscard]] const BlockDiagonal<T>& damping() const { return damping_; }
 
   /// r1 (n, in the problem's order of degrees of freedom) and r2 (m), from r1_0 (nullptr: 0) and r2_0, which they may
-  /// replace. V is Wide<T> or T. `work` needs workspace() scalars T.
-  template <class V>
-  void evaluate(const V* nu, const V* lambda, const T* r1_0, const T* r2_0, T* r1, T* r2, T* work) const;
+  /// replace. X is T, or lanes of T for as many columns; V is Wide<X> or X. `work` needs workspace() values X.
+  template <class V, class X>
+  void evaluate(const V* nu, const V* lambda, const X* r1_0, const X* r2_0, X* r1, X* r2, X* work) const;
 
   [[nodiscard]] Index workspace() const;
   [[nodiscard]] Index bytes() const;
@@ -38,9 +38,9 @@ template <class T> class KktResidual {
  private:
   template <class V> struct Buffers;
   template <class V> void outward(const V* nu, Buffers<V>& b) const;
-  template <class V> void link_rows(const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const;
-  template <class V> void joint_rows(const V* nu, const V* lambda, const T* r2_0, T* r2, Buffers<V>& b) const;
-  template <class V> void inward(T* r1, Buffers<V>& b) const;
+  template <class V, class X> void link_rows(const V* lambda, const X* r2_0, X* r2, Buffers<V>& b) const;
+  template <class V, class X> void joint_rows(const V* nu, const V* lambda, const X* r2_0, X* r2, Buffers<V>& b) const;
+  template <class V, class X> void inward(X* r1, Buffers<V>& b) const;
 
   std::shared_ptr<const Structure> structure_;
   std::vector<Index> body_of_;  // per degree of freedom

@@ -37,11 +37,10 @@ Counts counted(const Structure& s, const LinkOrder& sorted) {
 
 template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& plan) {
   const LinkOrder sorted(s, plan);
-  groups_.clear(), steps_.clear(), again_.clear(), pairs_.clear(), constraints_.clear(), segments_.clear(), spans_.clear(), sources_.clear();
+  groups_.clear(), bodies_.clear(), pairs_.clear(), constraints_.clear(), segments_.clear(), spans_.clear(), sources_.clear();
   const Counts all = counted(s, sorted);
   groups_.reserve(all.groups + 1);
-  steps_.reserve(all.bodies);
-  again_.reserve(all.bodies);
+  bodies_.reserve(all.bodies);
   pairs_.reserve(all.pairs);
   spans_.reserve(all.spans);
   segments_.reserve(all.segments);
@@ -52,7 +51,7 @@ template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& pla
   int first = 0, largest = 0;
   for (int begin = 0, end = 0; begin < sorted.size(); begin = end) {
     const auto links = sorted.links(sorted[begin]);
-    Group group{size(steps_), size(pairs_), size(constraints_), 0, first};
+    Group group{size(bodies_), size(pairs_), size(constraints_), 0, first};
     const int n = size(links), first_span = size(spans_);
     for (end = begin; end < sorted.size() && sorted.same_bodies(sorted[end], sorted[begin]); ++end) {
       const auto& e = s.link_constraints[sorted[end]];
@@ -64,19 +63,18 @@ template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& pla
     }
     for (int b = 0; b < n; ++b) {
       const int step = links[b].step - plan.first_active;
-      steps_.push_back(step);
-      again_.push_back(std::exchange(seen[step], 1));
+      bodies_.push_back({step, std::exchange(seen[step], 1) != 0});
       for (int k = begin; k < end; ++k) {
         const auto& e = s.link_constraints[sorted[k]];
-        const Index from = e.links[sorted.links(sorted[k])[b].place].first;
-        if (!sources_.empty() && sources_.back().from + sources_.back().rows == from) sources_.back().rows += e.rows;
-        else sources_.push_back({from, first, e.rows});
-        first += static_cast<int>(e.rows);
+        const int from = static_cast<int>(e.links[sorted.links(sorted[k])[b].place].first), rows = static_cast<int>(e.rows);
+        if (!sources_.empty() && sources_.back().from + sources_.back().rows == from) sources_.back().rows += rows;
+        else sources_.push_back({from, first, rows});
+        first += rows;
       }
     }
     for (int span = first_span; span < size(spans_); ++span) spans_[span].stride = group.rows;
     for (int b = 0; b < n; ++b)
-      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({steps_[group.first_body + b], spans_[span].row, spans_[span].rows});
+      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({bodies_[group.first_body + b].step, spans_[span].row, spans_[span].rows});
     if (plan.matrix == Matrix::M_R)
       for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
@@ -84,14 +82,14 @@ template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& pla
     groups_.push_back(group);
     largest = std::max(largest, first - group.first);
   }
-  groups_.push_back({size(steps_), size(pairs_), size(constraints_), 0, first});
+  groups_.push_back({size(bodies_), size(pairs_), size(constraints_), 0, first});
   k_.assign(static_cast<std::size_t>(first + 3), Six<T>::zero());  // gather reads four at a time
   weighted_.assign(static_cast<std::size_t>(largest), Six<T>::zero());
 }
 
 template <class T> void LinkRows<T>::load(const Problem<T>& problem) {
   for (const Source& s : sources_)
-    for (Index r = 0; r < s.rows; ++r) k_[s.to + r] = delassus::load(problem.K[s.from + r]);
+    for (int r = 0; r < s.rows; ++r) k_[s.to + r] = delassus::load(problem.K[s.from + r]);
 }
 
 // H_ii += K_iᵀ R K_i of body b of a group; R K_i is kept
@@ -123,8 +121,8 @@ void LinkRows<T>::add_weights(const BlockDiagonal<T>& weights, const SixBySix<T>
   for (auto g = groups_.begin(); g + 1 < groups_.end(); ++g) {
     const int bodies = g[1].first_body - g->first_body;
     for (int b = 0; b < bodies; ++b) {
-      const int i = steps_[g->first_body + b];
-      add_inertia(*g, b, weights, again_[g->first_body + b] ? inertia[i] : own[i], inertia[i]);
+      const int i = bodies_[g->first_body + b].step;
+      add_inertia(*g, b, weights, bodies_[g->first_body + b].again ? inertia[i] : own[i], inertia[i]);
     }
     for (int a = 0; a < bodies; ++a)
       for (int b = a + 1; b < bodies; ++b)
@@ -146,20 +144,20 @@ template <class T> template <class V> void LinkRows<T>::scatter(const V* x, Six<
 template <class T> template <class V> void LinkRows<T>::gather(const Six<V>* a, V* y) const {
   for (const Span& s : spans_) {
     const Six<T>* k = k_.data() + s.first;
-    const int* const steps = steps_.data() + s.first_body;
+    const Body* const bodies = bodies_.data() + s.first_body;
     if (s.bodies == 0) std::fill_n(y + s.row, s.rows, V{});
-    else if constexpr (std::is_same_v<V, double>) {
+    else if constexpr (has_lanes<V> && sums_together) {
       for (int r = 0; r < s.rows; r += 4, k += 4) {  // four sums at once
         Six<V> p[4];
-        for (int q = 0; q < 4; ++q) p[q] = product(k[q], a[steps[0]]);
+        for (int q = 0; q < 4; ++q) p[q] = product(k[q], a[bodies[0].step]);
         for (int b = 1; b < s.bodies; ++b)
-          for (int q = 0; q < 4; ++q) add_product(p[q], k[b * s.stride + q], a[steps[b]]);
+          for (int q = 0; q < 4; ++q) add_product(p[q], k[b * s.stride + q], a[bodies[b].step]);
         store_lanes(y + s.row + r, four_sums(p), s.rows - r);
       }
     } else {
       for (int r = 0; r < s.rows; ++r, ++k) {
-        y[s.row + r] = dot(*k, a[steps[0]]);
-        for (int b = 1; b < s.bodies; ++b) y[s.row + r] += dot(k[b * s.stride], a[steps[b]]);
+        y[s.row + r] = dot(*k, a[bodies[0].step]);
+        for (int b = 1; b < s.bodies; ++b) y[s.row + r] += dot(k[b * s.stride], a[bodies[b].step]);
       }
     }
   }
@@ -171,13 +169,13 @@ template <class T> void LinkRows<T>::mobility(const SixBySix<T>* omega, T* d) co
       d[s.row + r] = T(0);
       for (int b = 0; b < s.bodies; ++b) {
         const Six<T>& k = k_[s.first + b * s.stride + r];
-        d[s.row + r] += T(s.bodies) * dot(k, multiply(omega[steps_[s.first_body + b]], k));
+        d[s.row + r] += T(s.bodies) * dot(k, multiply(omega[bodies_[s.first_body + b].step], k));
       }
     }
 }
 
 template <class T> Index LinkRows<T>::bytes() const {
-  return static_cast<Index>((k_.size() + weighted_.size()) * sizeof(Six<T>) + (steps_.size() + pairs_.size()) * sizeof(int) + again_.size() +
+  return static_cast<Index>((k_.size() + weighted_.size()) * sizeof(Six<T>) + pairs_.size() * sizeof(int) + bodies_.size() * sizeof(Body) +
                             groups_.size() * sizeof(Group) + constraints_.size() * sizeof(OfConstraint) +
                             segments_.size() * sizeof(Segment) + spans_.size() * sizeof(Span) + sources_.size() * sizeof(Source));
 }

@@ -45,14 +45,17 @@ template <class T> class LinkRows {
     int first_body, bodies, row, rows, first, stride;
   };
   struct Source {  // of rows in Problem::K
-    Index from, to, rows;
+    int from, to, rows;
+  };
+  struct Body {
+    int step;    // from the first active
+    bool again;  // an earlier group has it too
   };
 
   void add_inertia(const Group& g, int b, const BlockDiagonal<T>& weights, const SixBySix<T>& from, SixBySix<T>& to);
 
   std::vector<Group> groups_;  // and one past the end
-  std::vector<int> steps_;     // of the bodies, from the first active
-  std::vector<char> again_;    // of the bodies: an earlier group has it too
+  std::vector<Body> bodies_;
   std::vector<int> pairs_;     // blocks of (0,1) (0,2) … (1,2) …
   std::vector<OfConstraint> constraints_;
   std::vector<Segment> segments_;  // in the order of k_

@@ -32,6 +32,7 @@
 // Source   N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -70,17 +71,18 @@ template <class T> class Refinement {
   [[nodiscard]] const Factor<T>& factor_M() const { return factor_M_; }
 
   struct NoBound {
-    std::optional<T> operator()(const T*, T*) const { return std::nullopt; }
+    template <class X> std::optional<X> operator()(const X*, X*) const { return std::nullopt; }
   };
   struct Steps {
     int most;
     bool patient = false;
   };
   /// What is asked: (K) with these right-hand sides, r1 (n, nullptr: zero) and r2 (m), from the pair given, or from zero.
-  struct Asked {
-    const T *r1 = nullptr, *r2 = nullptr;
-    const T *nu = nullptr, *lambda = nullptr;  // both, or none
+  template <class X> struct AskedOf {
+    const X *r1 = nullptr, *r2 = nullptr;
+    const X *nu = nullptr, *lambda = nullptr;  // both, or none
   };
+  using Asked = AskedOf<T>;
   /// f = λ of the (ν, λ) asked for (m). `correct(r1, r2, d_nu, d_lambda, work)` solves (K)
   /// approximately, r1 = nullptr meaning zero; `work` needs workspace(the correction's) scalars. nu, when given, receives ν (n).
   /// Report: iterations (corrections after the first evaluation), error_bound, error_estimate; not_converged when the
@@ -97,19 +99,33 @@ template <class T> class Refinement {
   /// The same with `energy(τ, work)` = τᵀM⁻¹τ.
   template <class Correct, class Energy, class AtRows = NoBound>
   Report solve_with(const Asked& asked, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy, T* work,
-                    T* nu = nullptr, const AtRows& at_rows = {}) const;
+                    T* nu = nullptr, const AtRows& at_rows = {}) const {
+    Report report;
+    solve_each(asked, {f, 0, nu}, 1, wanted, steps, correct, energy, work, &report, at_rows);
+    return report;
+  }
+  /// `count` columns side by side, λ of the next one `stride` further: each takes the steps it needs, as if it were alone.
+  /// `correct` and `work` as above, with lanes for scalars; a report of each.
+  template <class Correct>
+  void solve_lanes(const Lanes<T>* r2, T* f, Index stride, int count, Accuracy wanted, Steps steps, const Correct& correct,
+                   Lanes<T>* work, Report* reports) const {
+    const auto energy = [this](const Lanes<T>* tau, Lanes<T>* rest) { return factor_M_.energy(tau, rest); };
+    if (const Report factored = std::isfinite(wanted.error) ? factor_mass() : Report{}; !factored.ok()) std::fill_n(reports, count, factored);
+    else solve_each(AskedOf<Lanes<T>>{.r2 = r2}, {f, stride}, count, wanted, steps, correct, energy, work, reports, NoBound{});
+  }
 
   /// r₁ = Jᵀλ − M ν and r₂ = a − J ν − R⁻¹λ in T. Shapes n, m, m, n, m; `work` as for solve without its vectors.
   void residual(const T* nu, const T* lambda, const T* a, T* r1, T* r2, T* work) const {
-    residual_.evaluate(nu, lambda, nullptr, a, r1, r2, work);
+    residual_.template evaluate<T, T>(nu, lambda, nullptr, a, r1, r2, work);
   }
   [[nodiscard]] Index workspace(Index of_correction) const;
   [[nodiscard]] Index bytes() const;
 
  private:
-  struct Buffers;
+  template <class X> struct Buffers;
   /// Where products of two floats may leave the range of float.
   using Products = std::conditional_t<std::is_same_v<T, float>, double, T>;
+  template <class X> using ProductsOf = std::conditional_t<std::is_same_v<X, T>, Products, X>;
   struct Progress {
     double size = 1;      // of the last correction, relative: the error before it
     double expected = 1;  // of the next one: the error now
@@ -133,27 +149,47 @@ template <class T> class Refinement {
   static bool shown(const Report& r, const Progress& now, const Certificate& c) {
     return r.iterations != 1 || now.size <= 4 * unit_roundoff<T> || c.at_a_row <= unit_roundoff<T>;
   }
+  /// One column of those side by side; `open` until it is finished.
+  struct Column {
+    Report report;
+    Progress now, before;
+    Certificate certificate;
+    bool open = true;
+  };
+  struct Answers {
+    T* f;
+    Index stride;  // of f
+    T* nu = nullptr;
+  };
+  template <class X> using Columns = std::array<Column, columns_in<X>>;
+  template <class X, class Correct, class Energy, class AtRows>
+  void solve_each(const AskedOf<X>& asked, const Answers& to, int count, Accuracy wanted, Steps steps, const Correct& correct,
+                  const Energy& energy, X* work, Report* reports, const AtRows& at_rows) const;
+
   /// νᵀr₁⁰ + λᵀr₂⁰ of the iterate
-  static Products energy_of(const Buffers& b);
-  Progress start(Buffers& b) const;
-  Progress advance(Buffers& b, const Progress& before) const;
+  template <class X> static ProductsOf<X> energy_of(const Buffers<X>& b);
+  template <class X> void start(Buffers<X>& b, Columns<X>& columns) const;
+  template <class X> void advance(Buffers<X>& b, Columns<X>& columns) const;
   /// The pair given becomes the iterate.
-  static void take(Buffers& b, const Asked& asked);
-  static Report finish(const Buffers& b, Report report, Accuracy wanted, T* f, T* nu);
+  template <class X> static void take(Buffers<X>& b, const AskedOf<X>& asked);
+  template <class X> static void finish(const Buffers<X>& b, Column& column, int l, Accuracy wanted, const Answers& to);
   /// Overwrites the correction.
-  template <class Energy, class AtRows> Certificate certify(Buffers& b, const Energy& energy, const AtRows& at_rows) const {
-    const int of_r1 = scale(b.r1, b.d_nu, b.n), of_r2 = scale(b.r2, b.d_lambda, b.m);
-    const std::optional<T> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.d_lambda, b.scratch);
-    return rows ? bound(b, {energy(b.d_nu, b.rest), of_r1}, {*rows, of_r2}) : Certificate{};
+  template <class X, class Energy, class AtRows>
+  void certify(Buffers<X>& b, Columns<X>& columns, const Energy& energy, const AtRows& at_rows) const {
+    const auto of_r1 = scale(b.r1, b.d_nu, b.n), of_r2 = scale(b.r2, b.d_lambda, b.m);
+    const std::optional<X> rows = invertible_.ok() ? soft_rows(b) : at_rows(b.d_lambda, b.scratch);
+    if (rows) bound(b, {energy(b.d_nu, b.rest), of_r1}, Square<X>{*rows, of_r2}, columns);
+    else
+      for (Column& c : columns) c.certificate = {};
   }
   /// to = 2^(−e) from, of a largest magnitude between ½ and 1. Returns e; 0 where the scalar is exact or all is zero.
-  static int scale(const T* from, T* to, Index n);
-  struct Square {
-    T value;
-    int exponent;  // of its root
+  template <class X> static std::array<int, columns_in<X>> scale(const X* from, X* to, Index n);
+  template <class X> struct Square {
+    X value;
+    std::array<int, columns_in<X>> exponent;  // of its root
   };
-  std::optional<T> soft_rows(Buffers& b) const;
-  Certificate bound(const Buffers& b, const Square& motion, const Square& rows) const;
+  template <class X> std::optional<X> soft_rows(Buffers<X>& b) const;
+  template <class X> void bound(const Buffers<X>& b, const Square<X>& motion, const Square<X>& rows, Columns<X>& columns) const;
 
   std::shared_ptr<const Structure> structure_;
   KktResidual<T> residual_;
@@ -168,24 +204,25 @@ template <class T> class Refinement {
   double stiffest_ = 0;  // max √R_rr
 };
 
-// One column's vectors, zero up to their padded ends; Wide ones first, so that everything stays aligned.
-template <class T> struct Refinement<T>::Buffers {
-  static constexpr Index wide = static_cast<Index>(sizeof(W) / sizeof(T));
+// One column's vectors, or lanes of several, zero up to their padded ends; Wide ones first, so that everything stays aligned.
+template <class T> template <class X> struct Refinement<T>::Buffers {
+  using WX = Wide<X>;
+  static constexpr Index wide = static_cast<Index>(sizeof(WX) / sizeof(X));
   Index n, m;
-  W *nu, *lambda;
-  const T* r1_0;  // the right-hand sides
-  T *a, *f;       // … and λ rounded to T
-  T *d_nu, *r1, *d_lambda, *r2, *scratch;
-  T* rest;
+  WX *nu, *lambda;
+  const X* r1_0;  // the right-hand sides
+  X *a, *f;       // … and λ rounded to X
+  X *d_nu, *r1, *d_lambda, *r2, *scratch;
+  X* rest;
 
-  Buffers(const Structure& s, const Asked& asked, T* work) : n(s.dofs()), m(s.rows), r1_0(asked.r1) {
-    nu = reinterpret_cast<W*>(work);
-    lambda = reinterpret_cast<W*>(work += wide * padded(n));
-    T* const narrow_ones = work += wide * padded(m);
-    for (T** x : {&d_nu, &r1}) *x = work, work += padded(n);
-    for (T** x : {&a, &f, &d_lambda, &r2, &scratch}) *x = work, work += padded(m);
+  Buffers(const Structure& s, const AskedOf<X>& asked, X* work) : n(s.dofs()), m(s.rows), r1_0(asked.r1) {
+    nu = reinterpret_cast<WX*>(work);
+    lambda = reinterpret_cast<WX*>(work += wide * padded(n));
+    X* const narrow_ones = work += wide * padded(m);
+    for (X** x : {&d_nu, &r1}) *x = work, work += padded(n);
+    for (X** x : {&a, &f, &d_lambda, &r2, &scratch}) *x = work, work += padded(m);
     rest = work;
-    std::fill(narrow_ones, rest, T(0));
+    std::fill(narrow_ones, rest, X{});
     if (r1_0 != nullptr) std::copy(r1_0, r1_0 + n, r1);
     std::copy(asked.r2, asked.r2 + m, a);
     std::copy(asked.r2, asked.r2 + m, r2);
@@ -194,62 +231,94 @@ template <class T> struct Refinement<T>::Buffers {
 };
 
 template <class T>
-template <class Correct, class Energy, class AtRows>
-Report Refinement<T>::solve_with(const Asked& asked, T* f, Accuracy wanted, Steps steps, const Correct& correct, const Energy& energy,
-                                 T* work, T* nu, const AtRows& at_rows) const {
-  Buffers b(*structure_, asked, work);
+template <class X, class Correct, class Energy, class AtRows>
+void Refinement<T>::solve_each(const AskedOf<X>& asked, const Answers& to, int count, Accuracy wanted, Steps steps, const Correct& correct,
+                               const Energy& energy, X* work, Report* reports, const AtRows& at_rows) const {
+  Buffers<X> b(*structure_, asked, work);
   residual_.damping().switch_off(b.a);
   residual_.damping().switch_off(b.r2);
-  Report report;
-  Progress now;
+  Columns<X> columns;
+  int open = count;
+  const auto each = [&](const auto& f) {
+    for (int l = 0; l < count; ++l)
+      if (columns[l].open) f(columns[l], l);
+  };
+  const auto close = [&](Column& c, int l) {
+    finish(b, c, l, wanted, to);
+    reports[l] = c.report;
+    --open;
+  };
+  const auto residual = [&] { residual_.evaluate(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest); };
   if (asked.nu != nullptr) {  // what the pair given leaves
     take(b, asked);
     residual_.damping().switch_off(b.lambda);
-    residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
-    if (wanted.error > 0 && std::isfinite(wanted.error)) report.error_bound = certify(b, energy, at_rows).relative;
-    if (report.error_bound >= 0 && report.error_bound <= wanted.error) return finish(b, report, wanted, f, nu);
+    residual();
+    if (wanted.error > 0 && std::isfinite(wanted.error)) certify(b, columns, energy, at_rows);
+    each([&](Column& c, int l) {
+      c.report.error_bound = c.certificate.relative;
+      if (c.report.error_bound >= 0 && c.report.error_bound <= wanted.error) close(c, l);
+    });
+    if (open == 0) return;
     correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
-    now = advance(b, now);
+    advance(b, columns);
   } else {
     correct(b.r1_0, b.r2, b.d_nu, b.d_lambda, b.rest);
-    now = start(b);
+    start(b, columns);
   }
-  Progress before = now;
-  while (std::isfinite(now.size) && std::isfinite(wanted.error)) {
-    const bool done = (steps.patient ? now.patient : now.expected) <= unit_roundoff<T>;
+  each([](Column& c, int) { c.before = c.now; });
+  const auto close_ended = [&] {
+    each([&](Column& c, int l) {
+      if (!std::isfinite(c.now.size) || !std::isfinite(wanted.error)) close(c, l);
+    });
+  };
+  for (close_ended(); open > 0; close_ended()) {
+    const auto is_done = [&](const Column& c) { return (steps.patient ? c.now.patient : c.now.expected) <= unit_roundoff<T>; };
+    int done = 0;
+    each([&](Column& c, int) { done += is_done(c); });
     // ‖δ‖ < √eps of the solution when done: what is left then is as good in T
-    if (done) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
-    else residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
-    Certificate certificate;
-    if (done || wanted.error > 0) {
-      certificate = certify(b, energy, at_rows);
-      report.error_bound = certificate.relative;
-    }
-    if ((done && shown(report, now, certificate)) || enough(report, now, wanted.error)) break;
-    if (done) residual_.template evaluate<W>(b.nu, b.lambda, b.r1_0, b.a, b.r1, b.r2, b.rest);
-    const bool diverges = report.iterations >= 2 && now.size >= 0.5 && before.size >= 0.5;
-    if (report.iterations >= std::min(steps.most, wanted.steps) || diverges) {
-      certificate = certify(b, energy, at_rows);
-      report.error_bound = certificate.relative;
-      if (wanted.error > 0 || !at_rounding(report, certificate)) report.status = Status::not_converged;
-      break;
-    }
+    const bool in_T = done == open;
+    if (in_T) residual_.evaluate(b.d_nu, b.d_lambda, b.r1, b.r2, b.r1, b.r2, b.rest);
+    else residual();
+    if (done > 0 || wanted.error > 0) certify(b, columns, energy, at_rows);
+    each([&](Column& c, int l) {
+      const bool certified = is_done(c) || wanted.error > 0;
+      if (certified) c.report.error_bound = c.certificate.relative;
+      if ((is_done(c) && shown(c.report, c.now, c.certificate)) || enough(c.report, c.now, wanted.error)) close(c, l);
+    });
+    if (open == 0) break;
+    if (in_T) residual();
+    const auto is_last = [&](const Column& c) {
+      const bool diverges = c.report.iterations >= 2 && c.now.size >= 0.5 && c.before.size >= 0.5;
+      return c.report.iterations >= std::min(steps.most, wanted.steps) || diverges;
+    };
+    int last = 0;
+    each([&](Column& c, int) { last += is_last(c); });
+    if (last > 0) certify(b, columns, energy, at_rows);
+    each([&](Column& c, int l) {
+      if (!is_last(c)) return;
+      c.report.error_bound = c.certificate.relative;
+      if (wanted.error > 0 || !at_rounding(c.report, c.certificate)) c.report.status = Status::not_converged;
+      close(c, l);
+    });
+    if (open == 0) break;
     correct(b.r1, b.r2, b.d_nu, b.d_lambda, b.rest);
-    ++report.iterations;
-    before = now;
-    now = advance(b, before);
-    report.error_estimate = now.size;
+    each([](Column& c, int) { ++c.report.iterations, c.before = c.now; });
+    advance(b, columns);
+    each([](Column& c, int) { c.report.error_estimate = c.now.size; });
   }
-  if (!std::isfinite(now.size)) report.status = Status::not_finite;
-  return finish(b, report, wanted, f, nu);
 }
 
-template <class T> Report Refinement<T>::finish(const Buffers& b, Report report, Accuracy wanted, T* f, T* nu) {
+template <class T>
+template <class X>
+void Refinement<T>::finish(const Buffers<X>& b, Column& column, int l, Accuracy wanted, const Answers& to) {
+  Report& report = column.report;
+  if (!std::isfinite(column.now.size)) report.status = Status::not_finite;
   if (report.ok() && report.error_bound > (wanted.error > 0 ? wanted.error : std::sqrt(unit_roundoff<T>))) report.status = Status::not_converged;
-  std::copy(b.f, b.f + b.m, f);
-  if (nu != nullptr)
-    for (Index c = 0; c < b.n; ++c) nu[c] = narrow<T>(b.nu[c]);
-  return report;
+  T* const f = to.f + l * to.stride;
+  for (Index r = 0; r < b.m; ++r) f[r] = lane(b.f[r], l);
+  if constexpr (std::is_same_v<X, T>)
+    for (Index c = 0; c < b.n && to.nu != nullptr; ++c) to.nu[c] = narrow<T>(b.nu[c]);
+  column.open = false;
 }
 
 }  // namespace delassus

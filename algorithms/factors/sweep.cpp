@@ -112,46 +112,46 @@ template <class T> template <class V> void Factor<T>::project(const V* x, V* y, 
   gather(f, u, y);
 }
 
-template <class T> struct Factor<T>::Whole {
-  Six<T>*const f, *const active_f;
-  T *const u, *const active_u;
-  Whole(const Plan& plan, T* work)
-      : f(forces(work)), active_f(f + plan.first_active), u(work + plan.steps * static_cast<Index>(sizeof(Six<T>) / sizeof(T))),
+template <class T> template <class V> struct Factor<T>::Whole {
+  Six<V>*const f, *const active_f;
+  V *const u, *const active_u;
+  Whole(const Plan& plan, V* work)
+      : f(forces(work)), active_f(f + plan.first_active), u(work + plan.steps * static_cast<Index>(sizeof(Six<V>) / sizeof(V))),
         active_u(u + plan.first_column[plan.first_active]) {
-    std::fill(f, active_f, Six<T>::zero());
-    std::fill(u, active_u, T(0));
+    std::fill(f, active_f, Six<V>::zero());
+    std::fill(u, active_u, V{});
   }
 };
 
 // u += Eᵀτ
-template <class T> void Factor<T>::add_torques(const T* tau, T* u) const {
+template <class T> template <class V> void Factor<T>::add_torques(const V* tau, V* u) const {
   for (int i = 0; i < plan_->steps; ++i) {
     const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
-    const T* const t = tau + structure_->first_dof[plan_->body[i]];
+    const V* const t = tau + structure_->first_dof[plan_->body[i]];
     if (n == 1) u[first] += t[0];
     if (n <= 1) continue;
-    const Six<T> of_joint = load(t, n);
+    const Six<V> of_joint = load(t, n);
     const Six<T>* const e = e_.data() + vector_of_[i];
     for (int c = 0; c < n; ++c) u[first + c] += dot(e[c], of_joint);
   }
 }
 
 // ν = E u
-template <class T> void Factor<T>::velocities(const T* u, T* nu) const {
+template <class T> template <class V> void Factor<T>::velocities(const V* u, V* nu) const {
   for (int i = 0; i < plan_->steps; ++i) {
     const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first;
-    T* const v = nu + structure_->first_dof[plan_->body[i]];
+    V* const v = nu + structure_->first_dof[plan_->body[i]];
     if (n == 1) v[0] = u[first];
     if (n <= 1) continue;
     const Six<T>* const e = e_.data() + vector_of_[i];
-    Six<T> of_joint = scaled(e[0], u[first]);
+    Six<V> of_joint = scaled(e[0], u[first]);
     for (int c = 1; c < n; ++c) add_scaled(of_joint, e[c], u[first + c]);
     for (int c = 0; c < n; ++c) v[c] = of_joint[c];
   }
 }
 
-template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, T* work) const {
-  const Whole all(*plan_, work);
+template <class T> template <class V> void Factor<T>::solve(const V* x, const V* tau, V* y, V* nu, V* work) const {
+  const Whole<V> all(*plan_, work);
   scatter(x, all.active_f, all.active_u);
   if (tau != nullptr) add_torques(tau, all.u);
   backward(tau != nullptr ? plan_->all_runs() : plan_->active_runs(), all.active_f, all.active_u);
@@ -160,14 +160,14 @@ template <class T> void Factor<T>::solve(const T* x, const T* tau, T* y, T* nu, 
   velocities(all.u, nu);
 }
 
-template <class T> T Factor<T>::energy(const T* tau, T* work) const {
-  const Whole all(*plan_, work);
+template <class T> template <class V> V Factor<T>::energy(const V* tau, V* work) const {
+  const Whole<V> all(*plan_, work);
   const int columns = plan_->first_column[plan_->steps];
-  std::fill(all.active_f, all.f + plan_->steps, Six<T>::zero());
-  std::fill(all.active_u, all.u + columns, T(0));
+  std::fill(all.active_f, all.f + plan_->steps, Six<V>::zero());
+  std::fill(all.active_u, all.u + columns, V{});
   add_torques(tau, all.u);
   backward(plan_->all_runs(), all.active_f, all.active_u);
-  T sum(0);  // Σ u² / D
+  V sum{};  // Σ u² / D
   for (int c = 0; c < columns; ++c) sum += all.u[c] * all.u[c] / d_inverse_[c];
   return sum;
 }
@@ -237,7 +237,7 @@ template <class T> void Factor<T>::joint_mobility(T* d, SixBySix<T>* omega) cons
   }
 }
 
-#define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy(const T*, T*) const; \
+#define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve<T>(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy<T>(const T*, T*) const; \
   template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const; \
   template void Factor<T>::joint_mobility(T*, SixBySix<T>*) const; template void Factor<T>::half(const T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
@@ -249,7 +249,10 @@ template void Factor<Stochastic>::forward(Plan::Runs, Six<Stochastic>*, Stochast
 template void Factor<Stochastic>::gather(const Six<Stochastic>*, const Stochastic*, Stochastic*) const;
 #else
 template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
+template void Factor<double>::solve<Lanes8>(const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
+template Lanes8 Factor<double>::energy<Lanes8>(const Lanes8*, Lanes8*) const;
 template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
+template void Factor<float>::solve<Lanes8f>(const Lanes8f*, const Lanes8f*, Lanes8f*, Lanes8f*, Lanes8f*) const;
 #endif
 
 }  // namespace delassus

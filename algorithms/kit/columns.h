@@ -14,6 +14,28 @@ namespace delassus {
 /// three and a half on piles of boxes (`bench --benchmark_filter=columns_`).
 inline constexpr Index least_lanes = 4;
 
+/// How many columns a value stands for.
+template <class X> inline constexpr int columns_in = 1;
+template <> inline constexpr int columns_in<Lanes8> = 8;
+template <> inline constexpr int columns_in<Lanes8f> = 8;
+template <class X> [[nodiscard, gnu::always_inline]] inline auto lane(const X& x, int l) {
+  if constexpr (columns_in<X> == 1) return x;
+  else return x[l];
+}
+template <class X, class T> [[gnu::always_inline]] inline void set_lane(X& x, int l, const T& value) {
+  if constexpr (columns_in<X> == 1) x = value;
+  else x[l] = value;
+}
+
+/// `count` columns of m numbers side by side; what is left of the lanes is zero.
+template <class T, class V> void load_columns(const T* from, Index stride, Index m, Index count, V* x) {
+  for (Index r = 0; r < m; ++r) {
+    V v{};
+    for (Index l = 0; l < count; ++l) v[l] = from[r + l * stride];
+    x[r] = v;
+  }
+}
+
 /// Scalars for_columns needs when its kernel needs `values` values of V.
 template <class T> [[nodiscard]] Index columns_workspace(Index m, Index values, Index columns) {
   return has_lanes<T> && columns >= least_lanes ? lane_count * (2 * padded(m) + values) : values;
@@ -28,15 +50,11 @@ template <class T, class Kernel> void for_columns(ConstRef<T> in, Ref<T> out, T*
     V* const x = reinterpret_cast<V*>(work);
     V* const y = x + padded(m);
     for (; k - c >= least_lanes; c += std::min(lane_count, k - c)) {
-      const Index width = std::min(lane_count, k - c);
-      for (Index r = 0; r < m; ++r) {
-        V v{};
-        for (Index l = 0; l < width; ++l) v[l] = in(r, c + l);
-        x[r] = v;
-      }
+      const Index count = std::min(lane_count, k - c);
+      load_columns(in.data() + c * in.outerStride(), in.outerStride(), m, count, x);
       kernel(static_cast<const V*>(x), y, y + padded(m));
       for (Index r = 0; r < m; ++r)
-        for (Index l = 0; l < width; ++l) out(r, c + l) = y[r][l];
+        for (Index l = 0; l < count; ++l) out(r, c + l) = y[r][l];
     }
   }
   for (; c < k; ++c)

@@ -19,6 +19,15 @@ namespace delassus {
 using Lanes4 = double __attribute__((vector_size(32)));
 using UnalignedLanes4 = double __attribute__((vector_size(32), aligned(8)));
 using Lanes8f = float __attribute__((vector_size(32)));
+using Lanes4f = float __attribute__((vector_size(16)));
+using UnalignedLanes4f = float __attribute__((vector_size(16), aligned(4)));
+
+/// Whether sums over the lanes of several vectors are taken together (without AVX2 g++ 12 does it through memory).
+#ifdef __AVX2__
+inline constexpr bool sums_together = true;
+#else
+inline constexpr bool sums_together = false;
+#endif
 
 /// a b + c, rounded once.
 [[nodiscard]] inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
@@ -81,6 +90,8 @@ struct alignas(64) Lanes8 {
   friend Lanes8 operator*(const Lanes8& x, const Lanes8& y) { return {x.lo * y.lo, x.hi * y.hi}; }
   friend Lanes8 operator*(const Lanes8& x, double s) { return {x.lo * s, x.hi * s}; }
   friend Lanes8 operator*(double s, const Lanes8& x) { return x * s; }
+  friend Lanes8 operator/(const Lanes8& x, const Lanes8& y) { return {x.lo / y.lo, x.hi / y.hi}; }
+  friend Lanes8 operator/(const Lanes8& x, double s) { return {x.lo / s, x.hi / s}; }
   friend Lanes8 operator-(const Lanes8& x) { return {-x.lo, -x.hi}; }
 };
 [[nodiscard, gnu::always_inline]] inline Lanes8 joined(const Lanes4& lower, const Lanes4& upper) { return {lower, upper}; }
@@ -116,12 +127,42 @@ struct alignas(64) Lanes8 {
     for (int k = 0; k < n; ++k) to[k] = x[k];
 #endif
 }
+[[gnu::always_inline]] inline void store_lanes(float* to, const Lanes4f& x, int n) {
+  if (n >= 4) *reinterpret_cast<UnalignedLanes4f*>(to) = x;
+  else
+    for (int k = 0; k < n; ++k) to[k] = x[k];
+}
+
+[[nodiscard, gnu::always_inline]] inline Lanes4f lower(const Lanes8f& x) { return __builtin_shufflevector(x, x, 0, 1, 2, 3); }
+[[nodiscard, gnu::always_inline]] inline Lanes4f upper(const Lanes8f& x) { return __builtin_shufflevector(x, x, 4, 5, 6, 7); }
+/// The first six of x, then zeros.
+[[nodiscard, gnu::always_inline]] inline Lanes8f load_six(const float* x) {
+#ifdef __AVX512VL__
+  return _mm256_maskz_loadu_ps(0x3f, x);
+#else
+  return Lanes8f{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
+#endif
+}
+/// In double.
+[[nodiscard, gnu::always_inline]] inline Lanes8 widened(const Lanes8f& x) {
+  return joined(__builtin_convertvector(lower(x), Lanes4), __builtin_convertvector(upper(x), Lanes4));
+}
+
+/// Rounded to float.
+[[nodiscard, gnu::always_inline]] inline Lanes8f narrowed(const Lanes8& x) {
+  const Lanes4f l = __builtin_convertvector(lower(x), Lanes4f), u = __builtin_convertvector(upper(x), Lanes4f);
+  return __builtin_shufflevector(l, u, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 
 /// The sum of the lanes.
 [[nodiscard, gnu::always_inline]] inline double total(const Lanes8& x) {
   const Lanes4 four = lower(x) + upper(x);
   const auto two = __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
   return two[0] + two[1];
+}
+[[nodiscard, gnu::always_inline]] inline float total(const Lanes8f& x) {
+  const Lanes4f four = lower(x) + upper(x);
+  return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
 /// Rows for columns.

@@ -1,6 +1,6 @@
 // The kit the recursions are written on: a 6-vector and a 6×6 matrix of six columns.
 //
-//   Six<T>       six numbers; Six<double> is eight lanes (lanes.h) whose last two hold 0
+//   Six<T>       six numbers; in double and float eight lanes (lanes.h) whose last two hold 0
 //   SixBySix<T>  six Six columns
 //   Lanes<T>     eight right-hand sides side by side: the value type V of a sweep over eight columns
 //
@@ -29,16 +29,16 @@ template <class T> struct Six {
   const T& operator[](int k) const { return v[k]; }
   static Six zero() { Six x; for (T& e : x.v) e = T{}; return x; }
 };
-template <> struct Six<double> {
-  Lanes8 v;
-  double operator[](int k) const { return v[k]; }
-  static Six zero() { return {Lanes8{}}; }
+template <class T> requires has_lanes<T> struct Six<T> {
+  Lanes<T> v;
+  T operator[](int k) const { return v[k]; }
+  static Six zero() { return {Lanes<T>{}}; }
 };
 
 /// The six numbers from x on.
 template <class T> [[nodiscard]] inline Six<T> load(const T* x) {
   Six<T> y;
-  if constexpr (std::is_same_v<T, double>) y.v = load_six(x);
+  if constexpr (has_lanes<T>) y.v = load_six(x);
   else for (int k = 0; k < 6; ++k) y.v[k] = x[k];
   return y;
 }
@@ -59,49 +59,49 @@ template <class T> [[nodiscard]] inline Six<T> unit_vector(int k) {
   return y;
 }
 
-/// The lanes of x in double.
-template <class T> [[nodiscard]] inline Lanes8 lanes(const Six<T>& x) {
-  if constexpr (std::is_same_v<T, double>) return x.v;
-  else return Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
+/// The lanes of x in V.
+template <class V, class T> [[nodiscard]] inline Lanes<V> lanes(const Six<T>& x) {
+  if constexpr (std::is_same_v<V, T>) return x.v;
+  else return widened(x.v);
 }
 
 /// y += x · s
 template <class T, class V> inline void add_scaled(Six<V>& y, const Six<T>& x, const V& s) {
-  if constexpr (std::is_same_v<V, double>) y.v += lanes(x) * s;
+  if constexpr (has_lanes<V>) y.v += lanes<V>(x) * s;
   else for (int k = 0; k < 6; ++k) y.v[k] += x[k] * s;
 }
 /// y −= x · s
 template <class T, class V> inline void subtract_scaled(Six<V>& y, const Six<T>& x, const V& s) {
-  if constexpr (std::is_same_v<V, double>) y.v -= lanes(x) * s;
+  if constexpr (has_lanes<V>) y.v -= lanes<V>(x) * s;
   else for (int k = 0; k < 6; ++k) y.v[k] -= x[k] * s;
 }
 template <class T> inline void add(Six<T>& y, const Six<T>& x) {
-  if constexpr (std::is_same_v<T, double>) y.v += x.v;
+  if constexpr (has_lanes<T>) y.v += x.v;
   else for (int k = 0; k < 6; ++k) y.v[k] += x.v[k];
 }
 template <class T> inline void scale(Six<T>& y, const T& s) {
-  if constexpr (std::is_same_v<T, double>) y.v *= s;
+  if constexpr (has_lanes<T>) y.v *= s;
   else for (int k = 0; k < 6; ++k) y.v[k] *= s;
 }
 
 /// x · s
 template <class T, class V> [[nodiscard]] inline Six<V> scaled(const Six<T>& x, const V& s) {
   Six<V> y;
-  if constexpr (std::is_same_v<V, double>) y.v = lanes(x) * s;
+  if constexpr (has_lanes<V>) y.v = lanes<V>(x) * s;
   else for (int k = 0; k < 6; ++k) y.v[k] = x[k] * s;
   return y;
 }
 template <class T> [[nodiscard]] inline Six<T> negated(const Six<T>& x) {
   Six<T> y;
-  if constexpr (std::is_same_v<T, double>) y.v = -x.v;
+  if constexpr (has_lanes<T>) y.v = -x.v;
   else for (int k = 0; k < 6; ++k) y.v[k] = -x.v[k];
   return y;
 }
 
 /// xᵀ y
 template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Six<V>& y) {
-  if constexpr (std::is_same_v<V, double>) {
-    return total(lanes(x) * y.v);
+  if constexpr (has_lanes<V>) {
+    return total(lanes<V>(x) * y.v);
   } else {
     V sum = x[0] * y.v[0];
     for (int k = 1; k < 6; ++k) sum += x[k] * y.v[k];
@@ -112,20 +112,24 @@ template <class T, class V> [[nodiscard]] inline V dot(const Six<T>& x, const Si
 /// x ∘ y, entry by entry.
 template <class T, class V> [[nodiscard]] inline Six<V> product(const Six<T>& x, const Six<V>& y) {
   Six<V> p;
-  if constexpr (std::is_same_v<V, double>) p.v = lanes(x) * y.v;
+  if constexpr (has_lanes<V>) p.v = lanes<V>(x) * y.v;
   else for (int k = 0; k < 6; ++k) p.v[k] = x[k] * y.v[k];
   return p;
 }
 
 /// p += x ∘ y
-inline void add_product(Six<double>& p, const Six<double>& x, const Six<double>& y) { p.v += x.v * y.v; }
+template <class T> requires has_lanes<T> inline void add_product(Six<T>& p, const Six<T>& x, const Six<T>& y) { p.v += x.v * y.v; }
 
 /// What is left of x when its halves are added.
-[[nodiscard, gnu::always_inline]] inline Lanes4 folded(const Six<double>& x) { return lower(x.v) + upper(x.v); }
+template <class T> requires has_lanes<T> [[nodiscard, gnu::always_inline]] inline auto folded(const Six<T>& x) { return lower(x.v) + upper(x.v); }
 template <int... lane> [[nodiscard, gnu::always_inline]] inline Lanes4 picked(const Lanes4& a, const Lanes4& b) {
   return __builtin_shufflevector(a, b, lane...);
 }
+template <int... lane> [[nodiscard, gnu::always_inline]] inline Lanes4f picked(const Lanes4f& a, const Lanes4f& b) {
+  return __builtin_shufflevector(a, b, lane...);
+}
 [[nodiscard, gnu::always_inline]] inline Lanes4 added(const Lanes4& x, const Lanes4& y) { return x + y; }
+[[nodiscard, gnu::always_inline]] inline Lanes4f added(const Lanes4f& x, const Lanes4f& y) { return x + y; }
 /// Σ_k p[r][k] for four of them at once, in the order of total().
 template <class V> [[nodiscard, gnu::always_inline]] inline auto four_sums(const Six<V> (&p)[4]) {
   const auto pairs = [](const auto& a, const auto& b) { return added(picked<0, 1, 4, 5>(a, b), picked<2, 3, 6, 7>(a, b)); };
@@ -138,7 +142,7 @@ template <class V> [[gnu::always_inline]] inline void sums_in_lanes(const Six<V>
 }
 /// The same for the first `count` of them; the others must be zero.
 template <class V> inline void sums(const Six<V> (&p)[4], V (&sum)[4], Index count) {
-  if constexpr (std::is_same_v<V, double>) sums_in_lanes(p, sum);
+  if constexpr (has_lanes<V>) sums_in_lanes(p, sum);
   else
     for (Index r = 0; r < count; ++r) {
       sum[r] = p[r].v[0];
@@ -146,13 +150,13 @@ template <class V> inline void sums(const Six<V> (&p)[4], V (&sum)[4], Index cou
     }
 }
 
-/// u_c += x_cᵀ y of n columns; three sums at once in double.
+/// u_c += x_cᵀ y of n columns; three sums at once with lanes.
 template <class T, class V> [[gnu::always_inline]] inline void add_dots(V* u, const Six<T>* x, const Six<V>& y, int n) {
   int c = 0;
-  if constexpr (std::is_same_v<V, double>)
+  if constexpr (has_lanes<V> && sums_together)
     for (; c + 3 <= n; c += 3) {
       const Six<V> p[4] = {product(x[c], y), product(x[c + 1], y), product(x[c + 2], y), Six<V>::zero()};
-      const Lanes4 sum = four_sums(p);
+      const auto sum = four_sums(p);
       for (int r = 0; r < 3; ++r) u[c + r] += sum[r];
     }
   for (; c < n; ++c) u[c] += dot(x[c], y);
@@ -161,10 +165,10 @@ template <class T, class V> [[gnu::always_inline]] inline void add_dots(V* u, co
 /// u_c −= x_cᵀ y of n columns.
 template <class T, class V> [[gnu::always_inline]] inline void subtract_dots(V* u, const Six<T>* x, const Six<V>& y, int n) {
   int c = 0;
-  if constexpr (std::is_same_v<V, double>)
+  if constexpr (has_lanes<V> && sums_together)
     for (; c + 3 <= n; c += 3) {
       const Six<V> p[4] = {product(x[c], y), product(x[c + 1], y), product(x[c + 2], y), Six<V>::zero()};
-      const Lanes4 sum = four_sums(p);
+      const auto sum = four_sums(p);
       for (int r = 0; r < 3; ++r) u[c + r] -= sum[r];
     }
   for (; c < n; ++c) u[c] -= dot(x[c], y);
@@ -175,9 +179,9 @@ template <class T> struct SixBySix {
   static SixBySix zero() { SixBySix m; for (auto& c : m.column) c = Six<T>::zero(); return m; }
 };
 
-/// f(0) … f(5); in double no loop, so that six columns stay in registers.
+/// f(0) … f(5); with lanes no loop, so that six columns stay in registers.
 template <class T, class F> [[gnu::always_inline]] inline void for_columns_of_six(F&& f) {
-  if constexpr (std::is_same_v<T, double>) f(0), f(1), f(2), f(3), f(4), f(5);
+  if constexpr (has_lanes<T>) f(0), f(1), f(2), f(3), f(4), f(5);
   else for (int c = 0; c < 6; ++c) f(c);
 }
 /// y = x
@@ -217,8 +221,10 @@ template <class T> [[nodiscard]] inline SixBySix<T> transposed(const SixBySix<T>
     for (int c = 0; c < 6; ++c) y.column[c].v = r[c];
     return y;
   }
-  for (int c = 0; c < 6; ++c)
+  for (int c = 0; c < 6; ++c) {
+    y.column[c] = Six<T>::zero();  // the lanes behind too
     for (int r = 0; r < 6; ++r) y.column[c].v[r] = x.column[r].v[c];
+  }
   return y;
 }
 /// m += x yᵀ

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "algorithms/kit/columns.h"
@@ -29,7 +30,21 @@ template <class T> [[nodiscard]] inline double largest_magnitude(const T* x, Ind
   }
 }
 
-/// xᵀ y
+/// The same of each column.
+template <class X> [[nodiscard]] inline std::array<double, columns_in<X>> largest_magnitudes(const X* x, Index n) {
+  if constexpr (columns_in<X> == 1) return {largest_magnitude(x, n)};
+  else {
+    std::array<double, columns_in<X>> largest{};
+    for (Index r = 0; r < n; ++r)
+      for (int l = 0; l < columns_in<X>; ++l) {
+        const double size = std::abs(static_cast<double>(x[r][l]));
+        largest[l] = largest[l] < size ? size : largest[l];
+      }
+    return largest;
+  }
+}
+
+/// xᵀ y, of each column where they are lanes.
 template <class T> [[nodiscard]] inline T dot(const T* x, const T* y, Index n) {
   if constexpr (std::is_same_v<T, double>) {
     const Lanes8 *const a = reinterpret_cast<const Lanes8*>(x), *const b = reinterpret_cast<const Lanes8*>(y);
@@ -37,7 +52,7 @@ template <class T> [[nodiscard]] inline T dot(const T* x, const T* y, Index n) {
     for (Index c = 0; 8 * c < n; ++c) sum += a[c] * b[c];
     return total(sum);
   } else {
-    T sum(0);
+    T sum{};
     for (Index c = 0; c < n; ++c) sum += x[c] * y[c];
     return sum;
   }

@@ -1,5 +1,5 @@
 // Twice the digits for residuals: Wide<double> = DoubleDouble (106 bits by error-free transformations), Wide<Quad> the same on
-// Quad (226 bits), Wide<float> = double, and any other scalar itself.
+// Quad (226 bits), Wide<float> = double, and any other scalar itself. Of eight columns at once: Wide<Lanes8>.
 //
 // Files that include this header must be compiled with -ffp-contract=off: the transformations below are exact only when
 // every operation is rounded as written.
@@ -48,6 +48,11 @@ template <class T> struct TwoFold {
     return {p.value, p.error};
   }
   friend TwoFold operator*(const T& s, const TwoFold& x) { return x * s; }
+  /// The same number in all lanes.
+  template <class S> requires (std::is_same_v<S, double> && std::is_same_v<T, Lanes8>)
+  friend TwoFold operator*(const TwoFold& x, const S& s) { return x * (T{} + s); }
+  template <class S> requires (std::is_same_v<S, double> && std::is_same_v<T, Lanes8>)
+  friend TwoFold operator*(const S& s, const TwoFold& x) { return x * (T{} + s); }
 };
 using DoubleDouble = TwoFold<double>;
 
@@ -96,6 +101,7 @@ inline void sums(const Six<DoubleDouble> (&p)[4], DoubleDouble (&sum)[4], Index)
 template <class T> struct WideOf { using type = T; };
 template <> struct WideOf<double> { using type = DoubleDouble; };
 template <> struct WideOf<float> { using type = double; };
+template <> struct WideOf<Lanes8> { using type = TwoFold<Lanes8>; };
 template <> struct WideOf<Quad> { using type = TwoFold<Quad>; };
 template <class T> using Wide = typename WideOf<T>::type;
 

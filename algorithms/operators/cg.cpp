@@ -71,7 +71,7 @@ template <class T, class P> Report CgWith<T, P>::do_apply(ConstRef<T> f, Ref<T> 
 }
 
 template <class T, class P> void CgWith<T, P>::precondition(const T* r, T* z, T* work) const {
-  if constexpr (!plain) preconditioner_.solve_kkt(nullptr, r, nullptr, z, work);
+  if constexpr (!plain) preconditioner_.template solve_kkt<T>(nullptr, r, nullptr, z, work);
 }
 
 template <class T, class P> Report CgWith<T, P>::solve_column(const T* a, T* f, Accuracy wanted, T* workspace) const {

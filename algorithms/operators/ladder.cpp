@@ -228,6 +228,22 @@ template <class T> Report Ladder<T>::solve_column(const T* a, T* f, Accuracy wan
       [&] { std::copy_n(workspace, m, f); });
 }
 
+template <class T>
+bool Ladder<T>::solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const {
+  const Rung& first = rungs_.front();
+  if (order().front() != &first || !prepare(rungs_.front()).ok()) return false;
+  if (!first_->solve_together(a, f, wanted, reports, workspace)) return false;
+  for (Index c = 0; c < a.cols(); ++c) {
+    T* const answer = f.data() + c * f.outerStride();
+    using std::isfinite;
+    const bool finite = std::all_of(answer, answer + f.rows(), [](const T& x) { return isfinite(x); });
+    reports[c].rung = first.row->name;
+    reports[c].rungs_tried = 1;
+    if (!reports[c].ok() || !finite) reports[c] = solve_column(a.data() + c * a.outerStride(), answer, wanted, workspace);
+  }
+  return true;
+}
+
 // Each rung begins where the best one before it ended, when a pair was given.
 template <class T>
 Report Ladder<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const {
@@ -248,7 +264,7 @@ Report Ladder<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accur
       });
 }
 
-template <class T> Index Ladder<T>::do_workspace(Index) const { return padded(this->size()) + first_->workspace(); }
+template <class T> Index Ladder<T>::do_workspace(Index columns) const { return padded(this->size()) + first_->workspace(columns); }
 
 template <class T> Index Ladder<T>::do_kkt_workspace() const {
   return padded(this->structure()->dofs()) + padded(this->size()) + first_->kkt_workspace();

@@ -34,6 +34,8 @@ template <class T> class Ladder : public ColumnByColumn<T> {
  public:
   static constexpr Index max_dense_rows = 1000, first_dense_rows = 150;
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override;
+  /// On the first rung; the columns it has no answer to climb one by one.
+  bool solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const override;
 
  protected:
   void do_analyze() override;

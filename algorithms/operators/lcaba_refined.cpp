@@ -31,8 +31,10 @@ template <class T> Report LcabaRefined<T>::do_update_damping(const Damping<T>& d
 }
 
 // M_R δν = r₁ + JᵀR r₂;  δλ = R (r₂ − J δν)
-template <class T> void LcabaRefined<T>::correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const {
-  T* const rate = work + factor_.solve_workspace();
+template <class T>
+template <class X>
+void LcabaRefined<T>::correct(const X* r1, const X* r2, X* d_nu, X* d_lambda, X* work) const {
+  X* const rate = work + factor_.solve_workspace();
   refinement_.weights().multiply(r2, d_lambda);
   factor_.solve(d_lambda, r1, rate, d_nu, work);
   for (Index r = 0; r < this->size(); ++r) rate[r] = r2[r] - rate[r];
@@ -45,8 +47,14 @@ Report LcabaRefined<T>::solve_pair(const typename Refinement<T>::Asked& asked, T
   return refinement_.solve(asked, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
 }
 
-template <class T> Index LcabaRefined<T>::do_workspace(Index) const {
-  return refinement_.workspace(factor_.solve_workspace() + padded(this->size()));
+template <class T>
+bool LcabaRefined<T>::solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const {
+  if (!factored_.ok()) return false;
+  return this->in_lanes(refinement_, a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, reports, workspace);
+}
+
+template <class T> Index LcabaRefined<T>::do_workspace(Index columns) const {
+  return this->workspace_of(columns, refinement_.workspace(factor_.solve_workspace() + padded(this->size())));
 }
 
 template <class T> Index LcabaRefined<T>::do_bytes() const { return plan_.bytes() + factor_.bytes() + refinement_.bytes(); }

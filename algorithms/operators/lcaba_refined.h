@@ -7,7 +7,7 @@
 // Singular as lcaba. Refinement that has not reached its target after max_steps is reported as not_converged.
 // How      the factor of lcaba; the loop and the certificate of refinement.h.
 // Cost     update: lcaba, and the factor of M at the first solve that asks for a certificate; solve: lcaba + (k + 1) residuals + k sweeps; k = 1 mostly.
-// Workspace  that of lcaba + refinement's.
+// Workspace  that of lcaba + refinement's; eight times as much from four columns on, which go in lanes.
 // Error    refined: within the data's own sensitivity, or eps of the largest force and eps in the energy norm.
 // Source   paper, Algorithm 4; refinement.h.
 #pragma once
@@ -22,6 +22,7 @@ template <class T> class LcabaRefined : public Refined<T> {
 
   /// One column, as solve; nu, when given, receives ν = M⁻¹Jᵀf (n), which keeps its digits where J^T f cancels.
   Report solve_with_motion(const T* a, T* f, T* nu, Accuracy wanted, T* work) const { return solve_pair({.r2 = a}, f, nu, wanted, work); }
+  bool solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const override;
   /// What update was given; `to` has the structure and the sizes.
   void numbers(Problem<T>& to) const { refinement_.numbers(to); }
   /// zero_damping where the last R⁻¹ has no inverse.
@@ -37,7 +38,7 @@ template <class T> class LcabaRefined : public Refined<T> {
   [[nodiscard]] Index do_bytes() const override;
 
  private:
-  void correct(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
+  template <class X> void correct(const X* r1, const X* r2, X* d_nu, X* d_lambda, X* work) const;
 
   Plan plan_;
   Factor<T> factor_;

@@ -35,8 +35,14 @@ Report ProximalWith<T, F>::solve_pair(const typename Refinement<T>::Asked& asked
   return refinement_.solve(asked, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, work, nu);
 }
 
-template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index) const {
-  return refinement_.workspace(inverse_.workspace());
+template <class T, class F>
+bool ProximalWith<T, F>::solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const {
+  if (!factored_.ok()) return false;
+  return this->in_lanes(refinement_, a, f, wanted, {max_steps, true}, [this](auto... args) { inverse_.solve_kkt(args...); }, reports, workspace);
+}
+
+template <class T, class F> Index ProximalWith<T, F>::do_workspace(Index columns) const {
+  return this->workspace_of(columns, refinement_.workspace(inverse_.workspace()));
 }
 
 template <class T, class F> Index ProximalWith<T, F>::do_bytes() const { return refinement_.bytes() + inverse_.bytes(); }

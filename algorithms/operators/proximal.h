@@ -20,6 +20,7 @@ namespace delassus {
 template <class T, class F> class ProximalWith : public Refined<T> {
  public:
   static constexpr int max_steps = 64;
+  bool solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const override;
   ProximalWith() : inverse_(std::is_same_v<F, float> ? 0x1p13 : 0x1p20) {}
 
  protected:
