@@ -52,7 +52,7 @@ template <class T> void BranchRows<T>::analyze(const Structure& structure, const
     g.values = size;
     size += g.rows * g.count;
   }
-  values_.assign(static_cast<std::size_t>(size), T(0));
+  values_.assign(static_cast<std::size_t>(size + 7), T(0));  // add_thin_product reads beyond
 }
 
 template <class T> void BranchRows<T>::find_support(Group& g, const std::vector<Index>& bodies) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "algorithms/kit/instantiate.h"
+#include "algorithms/kit/thin_product.h"
 
 namespace delassus {
 
@@ -30,7 +31,6 @@ template <class T> void LtlKkt<T>::analyze_form() {
 }
 
 template <class T> void LtlKkt<T>::form(const Problem<T>& problem, MatrixX<T>& A0) {
-  using Columns = Eigen::Map<const MatrixX<T>>;
   const Structure& s = *this->structure();
   auto& rows = this->rows_;
   rows.assemble(problem);
@@ -47,8 +47,7 @@ template <class T> void LtlKkt<T>::form(const Problem<T>& problem, MatrixX<T>& A
           scaled_[k * g.rows + r] = rows.column(g, reached_[x].place + k)[r] * this->factor_.inverse_pivot(s.first_dof[i] + k);
       for (Index y = x; y < end; ++y) {
         const auto& h = rows.groups()[reached_[y].group];
-        A0.block(h.row, g.row, h.rows, g.rows) +=
-            Columns(rows.column(h, reached_[y].place), h.rows, n).lazyProduct(Columns(scaled_.data(), g.rows, n).transpose());
+        add_thin_product(&A0(h.row, g.row), A0.rows(), rows.column(h, reached_[y].place), h.rows, scaled_.data(), g.rows, n);
       }
     }
   }

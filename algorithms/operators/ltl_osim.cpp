@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "algorithms/kit/instantiate.h"
+#include "algorithms/kit/thin_product.h"
 
 namespace delassus {
 
@@ -32,7 +33,6 @@ template <class T> void LtlOsim<T>::analyze_form() {
 }
 
 template <class T> void LtlOsim<T>::form(const Problem<T>& problem, MatrixX<T>& A0) {
-  using Columns = Eigen::Map<const MatrixX<T>>;
   auto& rows = this->rows_;
   rows.assemble(problem);
   for (const auto& g : rows.groups())
@@ -44,8 +44,7 @@ template <class T> void LtlOsim<T>::form(const Problem<T>& problem, MatrixX<T>& 
       for (Index p = 0; p < g.count; ++p)
         for (Index r = 0; r < g.rows; ++r) scaled_[p * g.rows + r] = rows.column(g, p)[r] * this->factor_.inverse_pivot(rows.dof(g, p));
     scaled = run.of;
-    A0.block(h.row, g.row, h.rows, g.rows) += Columns(rows.column(h, run.b), h.rows, run.count)
-                                                  .lazyProduct(Columns(scaled_.data() + run.a * g.rows, g.rows, run.count).transpose());
+    add_thin_product(&A0(h.row, g.row), A0.rows(), rows.column(h, run.b), h.rows, scaled_.data() + run.a * g.rows, g.rows, run.count);
   }
 }
 
