@@ -10,6 +10,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -172,7 +173,7 @@ FuzzVerdict judge_scene(const std::string& file, const std::string& text) {
       const std::string mass = box["mass"].as<std::string>();
       char* end = nullptr;
       said += std::strtod(mass.c_str(), &end);
-      if (*end != '\0') out.finding = "mass '" + mass + "' is taken for a number";
+      if (std::string_view(end).find_first_not_of(" \t\r\n") != std::string_view::npos) out.finding = "mass '" + mass + "' is taken for a number";  // a carriage return alone is a line break of YAML
     }
   } catch (const YAML::Exception& e) {
     out.finding = std::string("loads, though: ") + e.what();
