@@ -105,7 +105,7 @@ TEST(Assembly, limits_do_not_break_couplings) {
     return joint(j);
   };
   const std::string urdf = write("slides.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + link("base") + link("one") + link("two") + link("end") +
-                                 slide("s1", "base", "one", "lower=\"-9\" upper=\"0.5\"") + slide("s2", "one", "two", "lower=\"-9\" upper=\"0.6\"") +
+                                 slide("s1", "base", "one", "lower=\"-9\" upper=\"0.5\"") + slide("s2", "one", "two", "lower=\"-9\" upper=\"0.625\"") +
                                  slide("s3", "base", "end", "lower=\"-9\" upper=\"9\"") + "</robot>\n");
   const Scene s = scene_of(urdf, "s3: 2", "  - {kind: point, of: r/two, at: [0, 0, 0], to: r/end, to_at: [0, 0, 0]}\n  - {kind: coupling, terms: [{joint: r/s1, coefficient: 1}, {joint: r/s2, coefficient: -1}]}\n");
   const double one = values(s, "one")[0], two = values(s, "two")[0], end = values(s, "end")[0];

@@ -55,10 +55,15 @@ TEST(JointLimits, of_several_freedoms_are_each_their_own) {
   };
   MatrixX<double> all = MatrixX<double>::Zero(3, 2);
   all(0, 0) = 1, all(1, 0) = -1, all(2, 1) = 1;
-  EXPECT_EQ(rows(""), all);
-  EXPECT_EQ(rows(", side: lower"), all({0, 2}, Eigen::all));
-  EXPECT_EQ(rows(", side: upper"), all.row(1));
-  EXPECT_EQ(rows(", dof: 1"), all.row(2));
+  const auto expect = [&](const std::string& more, const MatrixX<double>& expected) {
+    const MatrixX<double> found = rows(more);
+    ASSERT_EQ(found.rows(), expected.rows()) << more;
+    EXPECT_EQ(found, expected) << more;
+  };
+  expect("", all);
+  expect(", side: lower", all({0, 2}, Eigen::all));
+  expect(", side: upper", all.row(1));
+  expect(", dof: 1", all.row(2));
   const Scene s = scene_of(file, "", "  - {kind: joint_limit, joint: r/j}\n");
   EXPECT_EQ(s.model.constraints[2].name, "joint_limit r/j 1 lower");
 }
