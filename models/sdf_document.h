@@ -35,7 +35,7 @@ struct SdfDocument {
     Type type = Type::revolute;
     Pose<double> pose;                ///< in the world
     std::vector<Axis> axes;
-    double thread_pitch = 0, ratio = 0;
+    double thread_pitch = 0, ratio = 1;  ///< of SDF, where none is given
     std::string reference;            ///< gearbox: the link both angles are measured from
   };
   std::vector<Link> links;            ///< in the order of the file

@@ -97,13 +97,13 @@ void SdfBuilder::add_gearbox(const JointRow& row) {
   const auto [b1, s1] = turn_of(row, row.parent, row.pose.rotation * row.axes[0].direction);
   const auto [b2, s2] = turn_of(row, row.child, row.pose.rotation * row.axes[1].direction);
   if (b1 == b2) fail(row.element, "joins a joint to itself", "two joints; name two links that turn against the reference body");
-  const double ratio = row.ratio == 0 ? 1 : row.ratio;  // 1 where none is given
+  if (row.ratio == 0) fail(row.element, "gearbox_ratio is 0: it would not drive the child", "a ratio other than 0; give it, or fix the child's joint");
   Constraint c;
   c.name = options_.robot + "/" + row.name + " gearbox";
   c.kind = Kind::coupling;
-  c.terms = {{b2, 0, s2, {}}, {b1, 0, ratio * s1, {}}};
+  c.terms = {{b2, 0, s2, {}}, {b1, 0, row.ratio * s1, {}}};
   model_.constraints.push_back(std::move(c));
-  out_.mimics.push_back({b2, b1, -ratio * s1 * s2, 0});
+  out_.mimics.push_back({b2, b1, -row.ratio * s1 * s2, 0});
 }
 
 /// A frame at the joint, on one of its links.

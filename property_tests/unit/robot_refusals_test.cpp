@@ -126,6 +126,8 @@ TEST(RobotRefusals, sdf) {
            {sdf(turning + sdf_joint("universal", "a", "b", z + "<axis2><xyz>0 0.6 0.8</xyz></axis2>")), 5, "their cosine is 0.8", "perpendicular axes", "turn one"},
            {sdf(turning + sdf_joint("gearbox", "a", "b", "<gearbox_reference_body>a</gearbox_reference_body>" + z + "<axis2><xyz>0 0 1</xyz></axis2>")), 5, "\"a\" has no revolute joint",
             "one for the parent", "check <gearbox_reference_body>"},
+           {sdf("<link name='c'><inertial><mass>1</mass></inertial></link>" + turning + "<joint name='k' type='revolute'><parent>a</parent><child>c</child>" + z + "</joint>\n<joint name='g' type='gearbox'><parent>b</parent><child>c</child>"
+                "<gearbox_ratio>0</gearbox_ratio><gearbox_reference_body>a</gearbox_reference_body>" + z + "<axis2><xyz>0 0 1</xyz></axis2></joint>"), 6, "gearbox_ratio is 0", "a ratio other than 0", "fix the child's joint"},
            {"<sdf version='1.9'><model name='m'>\n<link name='a'>\n<collision name='c'><geometry><sphere><radius>-0.25</radius></sphere></geometry></collision></link></model></sdf>", 2, "-0.25",
             "", ""},
            {sdf(sdf_joint("revolut", "a", "b", z)), 4, "joint \"j_revolut\" (line 4): type \"revolut\" is none of SDF", "did you mean revolute? ball, ", "correct the type"},
