@@ -27,7 +27,9 @@ class MjcfReading : public SecondReading {
       throw std::runtime_error(std::to_string(robot.bodies.size()) + " bodies in the model, " + std::to_string(witness_.joints()) + " joints in MuJoCo");
     for (const Index j : witness_.curved()) q[model.first_q[static_cast<std::size_t>(robot.bodies[static_cast<std::size_t>(j)])]] = witness_.ref(j);
     witness_.set(model, robot.bodies, q);
-    const reference::WitnessBounds bounds = reference::witness_bounds(model, q, kinematics<double>(model, q));
+    VectorX<double> about = VectorX<double>::Zero(static_cast<Index>(model.bodies.size()));
+    for (std::size_t j = 0; j < robot.bodies.size(); ++j) about[robot.bodies[j]] = witness_.about(static_cast<Index>(j));
+    const reference::WitnessBounds bounds = reference::witness_bounds(model, q, kinematics<double>(model, q), about);
     WitnessMatrices out;
     out.M = witness_.M().cast<Quad>();
     for (Index k = 0; k < model.dofs(); ++k)

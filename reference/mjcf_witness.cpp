@@ -134,6 +134,11 @@ void MjcfWitness::set(const Model& model, const std::vector<Index>& bodies, cons
     if (s.d->warning[k].number != 0) throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(k, s.d->warning[k].lastinfo));
 }
 
+double MjcfWitness::about(Index joint) const {
+  const State& s = *state_;
+  return Eigen::Map<const Vector3<double>>(s.d->subtree_com + 3 * s.m->body_rootid[s.m->jnt_bodyid[joint]]).stableNorm();
+}
+
 MatrixX<double> MjcfWitness::M() const {
   const State& s = *state_;
   RowMajor full(s.m->nv, s.m->nv);

@@ -37,6 +37,9 @@ class MjcfWitness {
   [[nodiscard]] MatrixX<double> site_rows(const std::string& a, const std::string& b, bool weld) const;
   /// Name of an equality in the file; "" for none.
   [[nodiscard]] std::string name(Index equality) const;
+  /// Length from MuJoCo's origin to the point about which it computes the tree that a joint is in: the centre of mass of all
+  /// that hangs from one body of the world, bodies that stand included [m]. After set.
+  [[nodiscard]] double about(Index joint) const;
   /// Joints whose value enters an equality by a polynomial of higher degree.
   [[nodiscard]] std::vector<Index> curved() const;
   [[nodiscard]] double ref(Index joint) const;  ///< qpos0 of a hinge or slide

@@ -24,8 +24,8 @@ double joint_travel(JointType type, const double* q) {
 }
 
 /// ℓ_i of every body's frame: the path to it, and to the two points about which its tree is computed: the tree's centre of
-/// mass by MuJoCo, that of the root body by kinematics.
-Vector reach_of(const Model& model, const Vector& q) {
+/// mass by MuJoCo, that of the root body by kinematics; and `farther`.
+Vector reach_of(const Model& model, const Vector& q, const Vector& farther) {
   Vector reach(static_cast<Index>(model.bodies.size()));
   for (Index i = 0; i < reach.size(); ++i) {
     const Body& body = model.bodies[i];
@@ -48,7 +48,7 @@ Vector reach_of(const Model& model, const Vector& q) {
     const Body& root = model.bodies[tree(i)];
     if (root.mass > 0) reach[i] += root.com.stableNorm();
   }
-  return reach;
+  return farther.size() == 0 ? reach : Vector(reach + farther);
 }
 
 Vector6<double> halves(double angular, double linear) {
@@ -76,9 +76,9 @@ double direction_loss(const Model& model, const Constraint& c, const Vector& rea
 }
 
 /// The problem with every number replaced by the size of what it was computed from.
-Problem<double> sizes_of(const Model& model, const Vector& q, Problem<double> p) {
+Problem<double> sizes_of(const Model& model, const Vector& q, Problem<double> p, const Vector& farther) {
   const Structure& s = *p.structure;
-  const Vector reach = reach_of(model, q);
+  const Vector reach = reach_of(model, q, farther);
   Poses<double> at;
   poses(model, q, at);
   for (Index i = 0; i < s.bodies(); ++i) {
@@ -108,8 +108,8 @@ Problem<double> sizes_of(const Model& model, const Vector& q, Problem<double> p)
 
 }  // namespace
 
-WitnessBounds witness_bounds(const Model& model, const VectorX<double>& q, const Problem<double>& problem) {
-  const Problem<double> sizes = sizes_of(model, q, problem);
+WitnessBounds witness_bounds(const Model& model, const VectorX<double>& q, const Problem<double>& problem, const VectorX<double>& farther) {
+  const Problem<double> sizes = sizes_of(model, q, problem, farther);
   WitnessBounds b{mass_matrix(sizes), constraint_jacobian(sizes), {}};
   const Problem<Quad> wide = problem.cast<Quad>();
   const MatrixX<Quad> X = PivotedLdlt<Quad>(mass_matrix(wide)).solve(constraint_jacobian(wide).transpose());

@@ -77,7 +77,9 @@ class MujocoWitness {
 struct WitnessBounds {
   MatrixX<double> M, J, A;
 };
-/// `problem` is kinematics(model, q). @throws std::runtime_error when M is singular. Cost n³ + n² m in Quad.
-[[nodiscard]] WitnessBounds witness_bounds(const Model& model, const VectorX<double>& q, const Problem<double>& problem);
+/// `problem` is kinematics(model, q). `farther`, by body, is added to ℓ: the length to what MuJoCo computes about where our
+/// tree is a part of MuJoCo's (MjcfWitness::about). @throws std::runtime_error when M is singular. Cost n³ + n² m in Quad.
+[[nodiscard]] WitnessBounds witness_bounds(const Model& model, const VectorX<double>& q, const Problem<double>& problem,
+                                           const VectorX<double>& farther = {});
 
 }  // namespace delassus::reference

@@ -29,18 +29,15 @@ using namespace witness;
   throw NotServed("<" + std::string(e->Name()) + "> in line " + std::to_string(e->GetLineNum()) + ": " + what);
 }
 
-std::string attribute(const XMLElement* e, const char* name) {
-  const char* text = e == nullptr ? nullptr : e->Attribute(name);
-  return text == nullptr ? "" : text;
+/// Blanks around a value mean nothing in SDF, in names neither.
+std::string without_blanks(const char* text) {
+  const std::string all = text == nullptr ? "" : text;
+  const std::size_t first = all.find_first_not_of(" \t\n\v\f\r");
+  return first == std::string::npos ? "" : all.substr(first, all.find_last_not_of(" \t\n\v\f\r") + 1 - first);
 }
 
-std::string text_of(const XMLElement* e) {
-  if (e == nullptr || e->GetText() == nullptr) return {};
-  std::istringstream words(e->GetText());
-  std::string word;
-  words >> word;
-  return word;
-}
+std::string attribute(const XMLElement* e, const char* name) { return without_blanks(e == nullptr ? nullptr : e->Attribute(name)); }
+std::string text_of(const XMLElement* e) { return without_blanks(e == nullptr ? nullptr : e->GetText()); }
 
 std::vector<double> numbers(const XMLElement* e) {
   std::vector<double> out;
