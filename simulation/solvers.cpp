@@ -2,7 +2,11 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
+#include "simulation/solvers/admm.h"
+#include "simulation/solvers/direct.h"
+#include "simulation/solvers/newton_convex.h"
 #include "simulation/solvers/pgs.h"
+#include "simulation/solvers/proximal.h"
 
 namespace delassus::simulation {
 namespace {
@@ -13,6 +17,21 @@ template <template <class> class S> std::unique_ptr<ContactSolver<double>> make(
 
 const std::vector<SolverRow>& solvers() {
   static const std::vector<SolverRow> table = {
+      {.name = "direct", .summary = "equality rows by one solve of the ladder", .equations = "(G + R⁻¹) λ = target − g",
+       .certificate = "natural residual", .source = "paper, equations 2–5", .cost = "O(n + m) with local loops, no iteration",
+       .half_lines = false, .boxes = false, .relaxed = false, .exact = false, .hard_rows = true, .given_matrix = true, .make = make<Direct>},
+      {.name = "newton_convex", .summary = "Newton on the motion, lcaba's factor as its Hessian, exact line search",
+       .equations = "(M + JᵀHJ) d = Jᵀλ − M w", .certificate = "duality gap, natural residual",
+       .source = "Todorov 2014; Castro, Permenter, Han 2022", .cost = "O(n + m) an iteration with local loops",
+       .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = false, .given_matrix = false, .make = make<NewtonConvex>},
+      {.name = "proximal", .summary = "hard and redundant rows by proximal points, Newton inside; exact Coulomb by shifting",
+       .equations = "the same with R⁻¹ + E and b − E λ + Γ e_n", .certificate = "natural residual",
+       .source = "Rockafellar 1976; Acary, Cadoux 2013", .cost = "O(n + m) an iteration with local loops",
+       .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = false, .make = make<ProximalNewton>},
+      {.name = "admm", .summary = "alternating directions between the damped inverse and the cones, spectral ρ",
+       .equations = "x = (A + P)⁻¹(P z − y − b − Γ e_n), z = Π(x + P⁻¹y)", .certificate = "natural residual",
+       .source = "Carpentier, Le Lidec, Montaut 2024", .cost = "O(n + m) an iteration with local loops",
+       .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = true, .make = make<Admm>},
       {.name = "pgs", .summary = "projected Gauss–Seidel, cone after cone", .equations = "λ_c ← Π(λ_c − (u_c + Γ e_n)/γ_c)",
        .certificate = "natural residual", .source = "Moreau 1988; Jourdan, Alart, Jean 1998", .cost = "O(m²) a sweep",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = true, .make = make<Pgs>},

@@ -1,0 +1,66 @@
+// Newton's method on the motion: what newton_convex is, and what proximal does inside.
+//
+//   min over w  ½ wᵀM w + Σ_c ℓ_c(u_c),   u = J w + b,   ℓ_c(u) = −min over λ ∈ K_c of ½ λᵀR⁻¹λ + λᵀu
+//   λ_c(u) = Π in the metric R⁻¹ of −R u:  λ = R^½ Π̂(−R^½ u), Π̂ on the cone with coefficients μ_i (R_n/R_i)^½ … ; −∇ℓ_c = λ_c
+//   gradient  M w − Jᵀλ(u)
+//   Hessian   M + JᵀH J,  H_c = R^½ Π̂' R^½ ≥ 0, 3 × 3 for a contact, 0 where it is open
+//   step      d = (M + JᵀH J)⁻¹ (Jᵀλ − M w): the factor of lcaba with H as weights. Only H changes: update_weights.
+//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ λ(u + α J d), which increases: Newton within a bracket, O(m) each
+// Cost     O(n + m) an iteration with local loops. Nothing allocates after analyze.
+// Source   E. Todorov 2014 (MuJoCo); A. Castro, F. Permenter, X. Han 2022 (SAP). The factor: paper, Algorithm 4.
+#pragma once
+
+#include <memory>
+
+#include "algorithms/dynamics/tree_operators.h"
+#include "algorithms/factors/factor.h"
+#include "algorithms/operators/operator.h"
+#include "simulation/cones.h"
+
+namespace delassus::simulation {
+
+template <class T> class PrimalNewton {
+ public:
+  /// Why the rows cannot be taken, or "": the rows of a Coulomb group must be rows of one constraint.
+  [[nodiscard]] static std::string refusal(const ContactProblem<T>& p);
+  void analyze(const ContactProblem<T>& p);
+  /// Numbers of the mechanism; w is set to zero.
+  [[nodiscard]] Report start(const ContactProblem<T>& p);
+  /// w = M⁻¹Jᵀλ: where a warm start begins.
+  [[nodiscard]] Report begin_at(const VectorX<T>& lambda);
+
+  struct Outcome {
+    Report report;
+    int iterations = 0;
+    double gap = -1;  ///< duality gap at (w, λ) [J]
+  };
+  /// Minimises with R⁻¹ > 0 (m) and b (m) from the w it holds, until the step moves no row by more than `velocity` [m/s], or cannot.
+  Outcome minimise(const VectorX<T>& R_inverse, const VectorX<T>& b, double velocity, int iterations, VectorX<T>& lambda);
+  [[nodiscard]] const VectorX<T>& motion() const { return w_; }  ///< w, shape n
+
+  // One step taken apart, for tests of the Hessian.
+  /// λ(u) with its blocks H in hessian().
+  void evaluate(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
+  [[nodiscard]] const Damping<T>& hessian() const { return H_; }
+  /// d = (M + JᵀHJ)⁻¹ (Jᵀλ − M w) and J d.
+  [[nodiscard]] Report direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd);
+
+ private:
+  struct Slope {
+    T value, curvature;
+  };
+  void cone(const ConeRows& c, std::size_t e, const T* R_inverse, const T* u, T* lambda);
+  Slope slope(const VectorX<T>& R_inverse, const T& alpha);
+  T length(const VectorX<T>& R_inverse);
+  const ContactProblem<T>* problem_ = nullptr;
+  Plan plan_;
+  Factor<T> factor_;
+  BlockDiagonal<T> weights_;
+  std::unique_ptr<TreeOperators<T>> tree_;
+  std::unique_ptr<Workspace<T>> work_;
+  Damping<T> H_;
+  std::vector<std::size_t> block_of_;  // per group
+  VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, moved_, trial_, tau_;
+};
+
+}  // namespace delassus::simulation

@@ -1,0 +1,33 @@
+// proximal: hard rows, redundant ones too, and exact Coulomb, by proximal points with Newton inside.
+//
+// What     every cone, the convex relaxation and exact Coulomb; R⁻¹ ≥ 0; a mechanism.
+// Formula  λ ← argmin over K of ½ λᵀ(G + R⁻¹)λ + λᵀ(g − target + Γ e_n) + ½ ‖λ − λ before‖²_E,   E = diag(ε γ_c) where R⁻¹ < ε γ_c
+//            = the problem of primal_newton.h with R⁻¹ + E and b − E λ before + Γ e_n;  it begins at the motion before
+//          Γ ← ‖(μ_i u_i)‖ at the last motion (exact; relaxed 0)
+// End      natural residual. The proximal part converges by a factor ε/(ε + σ) in a direction of weight σ; Γ is a fixed point
+//          that need not converge: not_converged says so.
+// Cost     Newton's iterations, O(n + m) each; the report counts them.
+// Source   R. T. Rockafellar 1976; V. Acary, F. Cadoux 2013 (the fixed point on Γ).
+#pragma once
+
+#include "simulation/solver.h"
+#include "simulation/solvers/primal_newton.h"
+
+namespace delassus::simulation {
+
+template <class T> class ProximalNewton : public ContactSolver<T> {
+ public:
+  static constexpr double epsilon = 1e-4;
+  [[nodiscard]] std::string refusal(const ContactProblem<T>& p) const override { return PrimalNewton<T>::refusal(p); }
+
+ protected:
+  void do_analyze(const ContactProblem<T>& p) override;
+  SolverReport do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) override;
+
+ private:
+  void shift(const ContactProblem<T>& p);
+  PrimalNewton<T> newton_;
+  VectorX<T> R_inverse_, E_, b_, before_;
+};
+
+}  // namespace delassus::simulation
