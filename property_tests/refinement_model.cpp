@@ -87,7 +87,7 @@ class Model {
       const auto shrunk = [](double to, double from) { return to == 0 ? 0 : std::min(1.0, to / from); };
       const double rho = std::max({shrunk(largest(d_nu), motion * largest(nu_)), shrunk(largest(d_lambda), force * largest(lambda_)), shrunk(now, energy)});
       const double gained = std::max(at_stake / (of_force * largest(lambda_)), size <= 4 * unit_roundoff<double> ? 0 : size);
-      patient = size == 0 ? 0 : size * std::max(1.0, rho / (1 - rho));
+      patient = std::max(size == 0 ? 0 : size * std::max(1.0, rho / (1 - rho)), std::min(at_stake / (of_force * largest(lambda_)), rho * before));
       left = asked.patient ? patient : gained * rho / (1 - rho);
       if (!asked.patient && !R_inverse_.regular() && size > 4 * unit_roundoff<double>) left = std::max(left, size);
       motion = largest(nu_) == 0 ? 0 : largest(d_nu) / largest(nu_);
@@ -330,6 +330,7 @@ std::string stray_motion_wrong() {
   const std::string words[] = {steps_wrong({{0.5, 0, 0.375}, {0, 0, 0.125}, {1e-30, 0, 0}}, false, 2),
                                steps_wrong({{0.5, 0, 0.375}, {0, 0, 0.125}, {1e-30, 0, 0}}, true, 2),
                                steps_wrong({{0.5, 0, 0.5 - 0x1p-30}, {0, 0.25, 0}, {0, -0.25, 0x1p-30}}, false, 3),
+                               steps_wrong({{0.5, 0, 0.375}, {0, 0.25, 0}, {0, 0, 0.125}}, true, 3),  // 0 by luck, with R r₂ = 1/8
                                steps_wrong({{0.5, 0x1p10, 0.5 - 0x1p-30}, {0, -0x1p-16, 0x1p-30}}, false, 1)};
   return *std::max_element(std::begin(words), std::end(words));
 }

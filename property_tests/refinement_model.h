@@ -13,7 +13,8 @@ namespace delassus::laws {
 [[nodiscard]] std::string refinement_wrong(const Case& c);
 
 /// Corrections of ν that the energy hardly sees: as good as nothing where nothing is left of the residual, and the refinement
-/// ends; half of the last one where something is, and it goes on; far smaller than the first one, and it ends.
+/// ends; half of the last one where something is, and it goes on; far smaller than the first one, and it ends. A force whose
+/// patient correction is 0 while its row is not satisfied: it goes on.
 [[nodiscard]] std::string stray_motion_wrong();
 
 /// M factored by the refinement, on two threads that ask for it at once, or by somebody else: the same answer; bytes and

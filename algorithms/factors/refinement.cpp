@@ -128,7 +128,8 @@ template <class T> template <class X> void Refinement<T>::advance(Buffers<X>& b,
     const double gained = larger(relative(at_stake[l], largest[l]), now.size <= 4 * unit_roundoff<T> ? 0 : now.size);
     now.expected = gained == 0 ? 0 : gained * rho / (1 - rho);  // of this and all further corrections
     if (!invertible_.ok() && now.size > 4 * unit_roundoff<T>) now.expected = larger(now.expected, now.size);  // ρ is no more than a guess
-    now.patient = now.size == 0 ? 0 : now.size * larger(1, rho / (1 - rho));
+    const double by_luck = std::min(relative(at_stake[l], largest[l]), rho * before.size);  // a correction may round to 0
+    now.patient = larger(now.size == 0 ? 0 : now.size * larger(1, rho / (1 - rho)), by_luck);
     columns[l].now = now;
   }
 }

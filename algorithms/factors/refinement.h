@@ -12,7 +12,8 @@
 //          hard, when moreover the correction itself is below 4 eps. The first correction is compared with the solution, and the
 //          largest force may hide the rows that converge slowly: it ends the steps only when it is itself below 4 eps, or when
 //          the certificate below leaves no row more than eps of the largest force, √R_rr B ≤ eps max|λ|. Those of a patient correction, which is fast in most
-//          directions and slow in some, when it is below eps itself. Two corrections in a row as large as half the solution
+//          directions and slow in some, when it is below eps itself, and ρ of the one before it or |R r₂| is, too: of a row whose
+//          r₂ and J δν cancel it may be 0 by luck, with R r₂ left. Two corrections in a row as large as half the solution
 //          are divergence: not_converged. So is the last step allowed, unless neither certificate nor last correction is above 8 eps,
 //          or what the certificate leaves a row, √R_rr B / max|λ|, is below 4 eps: then no step would add a digit.
 // Certificate  B² = r₁ᵀM⁻¹r₁ + r₂ᵀR r₂ ≥ ‖δν‖²_M + ‖δλ‖²_{R⁻¹} for the final iterate (the symmetric part of (K) is
