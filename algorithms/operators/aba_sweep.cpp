@@ -28,21 +28,8 @@ template <class T> Report AbaSweep<T>::do_update_damping(const Damping<T>& dampi
 }
 
 template <class T> Report AbaSweep<T>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {
-  const Index m = this->size();
   if (!factored_.ok()) return factored_;
-  for_columns<T>(f, a, workspace, [&](const auto* x, auto* y, auto* work) {
-    auto* const damped = work + factor_.workspace();
-    const auto* forces = x;
-    if (!damping_.off().empty()) {  // rows that are off take no part
-      std::copy(x, x + m, damped);
-      damping_.switch_off(damped);
-      forces = damped;
-    }
-    factor_.project(forces, y, work);  // J M⁻¹ Jᵀ f
-    damping_.multiply(x, damped);
-    for (Index r = 0; r < m; ++r) y[r] += damped[r];
-    damping_.switch_off(y);
-  });
+  for_columns<T>(f, a, workspace, [this](const auto* x, auto* y, auto* work) { delassus_product(factor_, damping_, this->size(), x, y, work); });
   return {};
 }
 

@@ -11,10 +11,28 @@
 // Source   paper, Algorithms 1–3 and section IV-D (with f_i started at +Kᵀλ in the force convention).
 #pragma once
 
+#include <algorithm>
+
 #include "algorithms/operators/operator.h"
 #include "algorithms/factors/factor.h"
 
 namespace delassus {
+
+/// y = (J M⁻¹Jᵀ + R⁻¹) x by the factor of M; rows that are off take no part. Shapes m. `work`: the factor's, and padded m behind it.
+template <class T, class V>
+void delassus_product(const Factor<T>& M, const BlockDiagonal<T>& damping, Index m, const V* x, V* y, V* work) {
+  V* const damped = work + M.workspace();
+  const V* forces = x;
+  if (!damping.off().empty()) {
+    std::copy(x, x + m, damped);
+    damping.switch_off(damped);
+    forces = damped;
+  }
+  M.project(forces, y, work);
+  damping.multiply(x, damped);
+  for (Index r = 0; r < m; ++r) y[r] += damped[r];
+  damping.switch_off(y);
+}
 
 template <class T> class AbaSweep : public Operator<T> {
  protected:

@@ -1,5 +1,6 @@
 #include "algorithms/kit/columns.h"
 #include "algorithms/kit/instantiate.h"
+#include "algorithms/operators/aba_sweep.h"
 #include "algorithms/operators/cg.h"
 
 #include <algorithm>
@@ -48,19 +49,8 @@ template <class T, class P> Report CgWith<T, P>::do_update_damping(const Damping
   return factored_;  // apply is defined without the preconditioner; solve reports it
 }
 
-// y = (J M⁻¹ Jᵀ + R⁻¹) x
 template <class T, class P> void CgWith<T, P>::multiply(const T* x, T* y, T* workspace) const {
-  T* const damped = workspace + factor_.workspace();
-  const T* forces = x;
-  if (!damping_.off().empty()) {  // rows that are off take no part
-    std::copy(x, x + this->size(), damped);
-    damping_.switch_off(damped);
-    forces = damped;
-  }
-  factor_.project(forces, y, workspace);
-  damping_.multiply(x, damped);
-  for (Index r = 0; r < this->size(); ++r) y[r] += damped[r];
-  damping_.switch_off(y);
+  delassus_product(factor_, damping_, this->size(), x, y, workspace);
 }
 
 template <class T, class P> Report CgWith<T, P>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {

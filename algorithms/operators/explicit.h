@@ -2,7 +2,7 @@
 //
 // What     A = A₀ + R⁻¹, m × m and dense; apply is a product, solve an L D Lᵀ substitution, a pair (ν, λ) goes by A alone:
 //            A λ = r₂ − J M⁻¹ r₁,   ν = M⁻¹(r₁ + Jᵀλ).
-// Singular M: as the row reports it. A (redundant rows at zero damping): lost_pivot at a row, on solve only.
+// Singular M: as the row reports it. A (redundant hard rows): lost_pivot at a row, on solve only; rounding may leave a pivot above 0, and no digit.
 // Off      rows and columns of rows that are off are 0 in A, and 1 on the diagonal of what is factored: λ_r = 0.
 // Cost     beyond A₀: m² + m³/3 for a new damping, 2 m² per apply and per solve, 3 m² numbers.
 // Error    apply that of A₀; solve normwise κ(A), backward stable in A (ldlt.h).
