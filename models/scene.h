@@ -11,6 +11,7 @@
 
 #include "algorithms/mechanism/loop_closing.h"
 #include "models/robot.h"
+#include "models/scene_motion.h"
 
 namespace delassus {
 
@@ -33,6 +34,7 @@ struct Scene {
   std::vector<std::string> notes;     ///< what the loaders left out or changed, one sentence each, no two alike
   std::vector<Warning> warnings;      ///< what the loaders found doubtful, no two alike
   std::vector<Robot> robots;          ///< as read, in the order of the scene; their notes and warnings are above
+  SceneMotion motion;                 ///< what only matters where the scene moves
   std::map<std::string, Frame> frames;  ///< every link `robot/link` and box, links merged by fixed joints included
 };
 

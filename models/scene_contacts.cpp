@@ -33,7 +33,14 @@ void SceneLoader::detect(const Yaml* y) {
   search.ground = scene_.has_ground;
   search.ground_height = scene_.ground_height;
   search.object = object_;
+  scene_.motion.detects = true;
   if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
+  scene_.motion.search = search;
+  if (y != nullptr && y->has("friction")) scene_.motion.friction = y->at("friction").non_negative("");
+  if (y != nullptr && y->has("restitution")) {
+    scene_.motion.restitution = y->at("restitution").non_negative("");
+    if (scene_.motion.restitution > 1) y->at("restitution").fail(number_text(scene_.motion.restitution) + " is above 1", "a number from 0 to 1; 1 bounces back with the speed it came");
+  }
   Index vertices = 64;
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
     y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
@@ -59,11 +66,11 @@ void SceneLoader::detect(const Yaml* y) {
 }
 
 void SceneLoader::read_contacts(const Yaml& y) {
-  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, damping}, or a list of {of, at, to, normal, friction, damping}";
+  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
   if (y.is_list()) {
     for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
   } else if (y.is_map()) {
-    y.keys({"detect", "margin", "hull_vertices", "friction", "damping"});
+    y.keys({"detect", "margin", "hull_vertices", "friction", "restitution", "damping"});
     if (y.at("detect").boolean()) detect(&y);
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);
@@ -103,7 +110,10 @@ void SceneLoader::read_damping(const Yaml& root) {
     const Yaml y = root.at("damping");
     if (y.is_list() && y.list("").size() > 0 && y.list("")[0].is_list()) y.fail("a block over all rows", "a number or a list; blocks belong to single constraints");
     damp(y, 0, first.back());
+    if (y.is_scalar()) scene_.motion.contact_damping = y.non_negative(" [1/kg]");
   }
+  if (root.has("contacts") && root.at("contacts").is_map() && root.at("contacts").has("damping") && root.at("contacts").at("damping").is_scalar())
+    scene_.motion.contact_damping = root.at("contacts").at("damping").non_negative(" [1/kg]");
   for (std::size_t k = 0; k < own_damping_.size(); ++k)
     if (own_damping_[k]) damp(*own_damping_[k], first[k], first[k + 1] - first[k]);
 }

@@ -63,6 +63,16 @@ class SceneLoader {
   void tell_assembly();
   void note_moves();
 
+  // scene_motion.cpp
+  void read_velocities(const Robot& robot, const Yaml& velocities);
+  void read_velocity(Index body, const Yaml& y);
+  void read_springs(const Yaml& y);
+  void read_motors(const Yaml& y);
+  void read_wrenches(const Yaml& y);
+  [[nodiscard]] Index dof_of(const Yaml& y, Index body) const;
+  VectorX<double>& velocities();
+  void stands_at(const char* key);
+
   // scene_contacts.cpp
   void read_contacts(const Yaml& y);
   void read_contact(const Yaml& y, double friction);

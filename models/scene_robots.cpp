@@ -193,7 +193,7 @@ Robot SceneLoader::read_file(const Yaml& y, const RobotOptions& options) {
 }
 
 void SceneLoader::read_robot(const Yaml& y) {
-  y.keys({"name", "urdf", "file", "base", "pose", "joints", "joint_types", "armature", "mesh_path", "keyframe"});
+  y.keys({"name", "urdf", "file", "base", "pose", "joints", "velocities", "velocity", "joint_types", "armature", "mesh_path", "keyframe"});
   const RobotOptions options = robot_options(y, new_name(y.at("name")));
   const std::size_t before = scene_.model.constraints.size();
   Robot robot = read_file(y, options);
@@ -205,6 +205,11 @@ void SceneLoader::read_robot(const Yaml& y) {
     for (std::size_t k = 0; k < values.size(); ++k) scene_.q[scene_.model.first_q[z(body)] + static_cast<Index>(k)] = values[k];
   if (y.has("joints")) set_joints(robot, y.at("joints"));
   set_mimics(robot);
+  if (y.has("velocities")) read_velocities(robot, y.at("velocities"));
+  if (y.has("velocity")) {
+    if (root == ground || scene_.model.bodies[z(root)].joint.type != JointType::floating) y.at("velocity").fail("the base does not float", "velocity for base: free only; velocities: {joint: value} for joints");
+    read_velocity(root, y.at("velocity"));
+  }
   check_ranges(robot, y);
   for (const auto& [link, frame] : robot.links) scene_.frames.emplace(robot.name + "/" + link, frame);
   scene_.notes.insert(scene_.notes.end(), robot.notes.begin(), robot.notes.end());
@@ -213,7 +218,7 @@ void SceneLoader::read_robot(const Yaml& y) {
 }
 
 void SceneLoader::read_box(const Yaml& y) {
-  y.keys({"name", "mass", "size", "pose", "friction"});
+  y.keys({"name", "mass", "size", "pose", "velocity", "friction"});
   const std::string name = new_name(y.at("name"));
   const double mass = y.at("mass").positive(" [kg]");
   const Vector3<double> size = y.at("size").vector3(" > 0 [m]");
@@ -226,6 +231,7 @@ void SceneLoader::read_box(const Yaml& y) {
   const Index i = scene_.model.add(std::move(body));
   grow_q();
   set_pose(i, y.has("pose") ? y.at("pose").pose() : Pose<double>{});
+  if (y.has("velocity")) read_velocity(i, y.at("velocity"));
   scene_.frames.emplace(name, Frame{i, {}});
 }
 
