@@ -1,0 +1,168 @@
+// What a scene does not call for has no bit, no operation, no byte in the run: the proofs, for every effect of the table.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+
+#include "algorithms/kit/counted.h"
+#include "property_tests/unit/stepping_scenes.h"
+#include "simulation/effects/gravity.h"
+#include "simulation/effects/springs.h"
+
+namespace delassus {
+namespace {
+
+using namespace stepping;
+
+/// The scene as if the key of an effect had never been written.
+void never_written(const std::string& effect, Scene& s) {
+  using Kind = Constraint::Kind;
+  const auto drop = [&](auto&& which) {
+    std::erase_if(s.model.constraints, which);
+    Index rows = 0;
+    for (const Constraint& c : s.model.constraints) rows += row_count(s.model, c);
+    s.damping = Damping<double>::uniform(rows, 0);
+  };
+  if (effect == "gravity") s.has_gravity = false, s.gravity.setZero();
+  if (effect == "wrenches") s.motion.wrenches.clear();
+  if (effect == "springs") s.motion.springs.clear();
+  if (effect == "motors") s.motion.motors.clear();
+  if (effect == "joint damping") for (Body& b : s.model.bodies) b.joint.damping.clear();
+  if (effect == "armature") for (Body& b : s.model.bodies) b.joint.armature.clear();
+  if (effect == "couplings") drop([](const Constraint& c) { return c.kind == Kind::coupling; });
+  if (effect == "joint locks") drop([](const Constraint& c) { return c.kind == Kind::joint_lock; });
+  if (effect == "joint limits") for (Body& b : s.model.bodies) b.joint.lower.clear(), b.joint.upper.clear();
+  if (effect == "joint friction") for (Body& b : s.model.bodies) b.joint.friction.clear();
+  if (effect == "collision detection" || effect == "contacts") s.motion.detects = false;
+  if (effect == "contact friction") s.ground_friction = -1;
+  if (effect == "restitution") s.motion.restitution = 0;
+  if (effect == "loops") drop([](const Constraint& c) { return c.loop; });
+}
+
+const std::map<std::string, std::function<Scene()>>& callers() {
+  static const std::map<std::string, std::function<Scene()>> all{
+      {"gravity", everything_smooth},  {"velocity products", everything_smooth}, {"wrenches", everything_smooth},
+      {"springs", everything_smooth},  {"joint damping", everything_smooth},     {"motors", everything_smooth},
+      {"armature", everything_smooth}, {"couplings", everything_smooth},         {"joint locks", everything_smooth},
+      {"joint limits", stopped_pendulum}, {"joint friction", stopped_pendulum},
+      {"collision detection", thrown_box}, {"contacts", thrown_box}, {"contact friction", thrown_box}, {"restitution", thrown_box},
+      {"loops", [] { return slider_crank(0.3, 0.8, 0.4, 5); }}};
+  return all;
+}
+
+template <class T> const PlanLine& line_of(const StepPlan<T>& plan, const std::string& effect) {
+  for (const PlanLine& line : plan.lines)
+    if (line.effect->name == effect) return line;
+  throw std::logic_error("no line of " + effect);
+}
+
+std::int64_t operations(const Scene& scene, const Settings& settings, int steps) {
+  Simulation<Counted> s(scene, settings);
+  operation_count = {};
+  for (int k = 0; k < steps; ++k)
+    if (!s.step().ok()) return -1;
+  return operation_count.total();
+}
+
+bool same_bits(const State<double>& a, const State<double>& b) { return a.q.size() > 0 && a.q == b.q && a.nu == b.nu; }
+
+TEST(Absence, bits_and_operations_are_those_of_a_program_without_the_row) {
+  for (const auto& [effect, make] : callers()) {
+    const Scene scene = make();
+    std::vector<EffectRow> smaller = effects();
+    std::erase_if(smaller, [&](const EffectRow& row) { return row.name == effect; });
+    ASSERT_EQ(smaller.size() + 1, effects().size());
+    Settings without = step_of(1e-3), program = without;
+    without.without = {effect};
+    program.table = &smaller;
+    EXPECT_TRUE(same_bits(run(scene, without, 20), run(scene, program, 20))) << effect;
+    EXPECT_EQ(operations(scene, without, 5), operations(scene, program, 5)) << effect;
+    EXPECT_FALSE(same_bits(run(scene, without, 20), run(scene, step_of(1e-3), 20))) << effect << ": the scene does not call for it";
+  }
+}
+
+TEST(Absence, bits_and_operations_are_those_of_a_scene_without_the_key) {
+  for (const auto& [effect, make] : callers()) {
+    if (effect == "velocity products") continue;  // no key: they follow from the joints
+    const Scene scene = make();
+    Scene bare = scene;
+    never_written(effect, bare);
+    Settings without = step_of(1e-3);
+    without.without = {effect};
+    EXPECT_TRUE(same_bits(run(scene, without, 20), run(bare, step_of(1e-3), 20))) << effect;
+    EXPECT_EQ(operations(scene, without, 5), operations(bare, step_of(1e-3), 5)) << effect;
+    EXPECT_LT(operations(bare, step_of(1e-3), 5), operations(scene, step_of(1e-3), 5)) << effect;
+  }
+}
+
+/// A table in which gravity brings the springs along, whoever leaves them out.
+TEST(Absence, the_proofs_see_a_leak) {
+  std::vector<EffectRow> leaky = effects();
+  for (EffectRow& row : leaky)
+    if (row.name == "gravity")
+      std::get<Adder<double>>(row.adders) = [](StepPlan<double>& p, const Scene& s) {
+        p.add<Gravity<double>>(s.gravity, static_cast<Index>(p.model.bodies.size()));
+        p.add<Springs<double>>(p.model, s.motion.springs);
+      };
+  const Scene scene = everything_smooth();
+  Scene bare = scene;
+  bare.motion.springs.clear();
+  Settings without = step_of(1e-3), program = without;
+  without.table = program.table = &leaky;
+  without.without = {"springs"};
+  EXPECT_FALSE(same_bits(run(scene, without, 20), run(bare, program, 20)));
+}
+
+TEST(Absence, what_is_not_in_the_plan_has_no_byte_and_no_term) {
+  for (const auto& [effect, make] : callers()) {
+    const Scene scene = make();
+    const StepPlan<double> with(scene, step_of(1e-3));
+    EXPECT_TRUE(line_of(with, effect).in) << effect;
+    EXPECT_GT(line_of(with, effect).bytes, 0) << effect;
+    Settings left_out = step_of(1e-3);
+    left_out.without = {effect};
+    const StepPlan<double> plan(scene, left_out);
+    EXPECT_FALSE(line_of(plan, effect).in) << effect;
+    EXPECT_EQ(line_of(plan, effect).bytes, 0) << effect;
+    EXPECT_EQ(line_of(plan, effect).terms, "") << effect;
+    Index expected = with.bytes() - line_of(with, effect).bytes;
+    for (const PlanLine& line : with.lines)
+      if (line.effect->needs == effect) expected -= line.bytes;  // what has nothing to act on goes too
+    EXPECT_EQ(plan.bytes(), expected) << effect;
+  }
+}
+
+TEST(Absence, velocity_products_are_proved_away) {
+  const Scene cube = free_body({0.4, 0.4, 0.4}), brick = free_body({0.4, 0.4, 0.5});
+  EXPECT_FALSE(line_of(StepPlan<double>(cube, {}), "velocity products").in);
+  EXPECT_TRUE(line_of(StepPlan<double>(brick, {}), "velocity products").in);
+  Model lift;
+  lift.add(body("a", ground, JointType::prismatic, 1, {1, 2, 3}));
+  lift.add(body("b", 0, JointType::prismatic, 1, {1, 2, 3}, {0.1, 0.2, 0.3}, {1, 0, 0}));
+  EXPECT_FALSE(line_of(StepPlan<double>(scene_of(lift), {}), "velocity products").in);
+  EXPECT_FALSE(line_of(StepPlan<double>(pendulum(1), {}), "velocity products").in);
+  EXPECT_TRUE(line_of(StepPlan<double>(double_pendulum(), {}), "velocity products").in);
+}
+
+/// All terms forced on agree within rounding where what is proved away is zero, and cost what was saved.
+TEST(Absence, everything_forced_on_agrees_within_rounding) {
+  for (const Scene& scene : {free_body({0.4, 0.4, 0.4}), pendulum(1)}) {
+    Settings all = step_of(1e-3);
+    all.everything = true;
+    const State<double> a = run(scene, step_of(1e-3), 100), b = run(scene, all, 100);
+    ASSERT_EQ(a.q.size(), b.q.size());
+    EXPECT_LT((a.q - b.q).norm() / (0x1p-53 * 100 * (1 + a.q.norm())), 30);
+    EXPECT_GT(operations(scene, all, 5), operations(scene, step_of(1e-3), 5) + 5 * 100);
+  }
+}
+
+/// Every row of the table is held by the tests above.
+TEST(Absence, every_effect_has_a_caller) {
+  for (const EffectRow& row : effects()) {
+    const bool as_loops = row.name == "other joints";  // the same rows without assembly
+    EXPECT_EQ(callers().count(as_loops ? "loops" : std::string(row.name)), 1u) << row.name;
+  }
+}
+
+}  // namespace
+}  // namespace delassus

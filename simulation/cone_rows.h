@@ -1,0 +1,36 @@
+// Rows of one step that are in a cone: on a joint, or of a contact of two bodies. Plain values that effects write one after another.
+#pragma once
+
+#include "algorithms/problem/problem.h"
+#include "simulation/state.h"
+
+namespace delassus::simulation {
+
+template <class T> struct RowSet {
+  enum class Kind : std::uint8_t { limit, joint_friction, contact } kind = Kind::contact;
+  Identity identity{};
+  Index body = ground, other = ground;  ///< the moved body of a joint; the two bodies of a contact
+  Index dof = 0;                        ///< of the joint
+  int side = 1;                         ///< limit: row side · ν_dof
+  Vector3<T> point, point_of_other;     ///< the contact's point from the reference points of either tree [m]
+  Matrix3<T> axes;                      ///< columns: normal from `other` to `body`, two tangents; world
+  Index directions = 1;                 ///< rows: the normal alone, or with tangents
+  T gap{};                              ///< [m or rad]
+  T friction{-1};                       ///< coefficient as the scene has it; negative: not given
+  T target{};                           ///< least velocity along the normal after the step
+  T coefficient{};                      ///< Coulomb's, of rows with tangents
+  T effort{};                           ///< joint_friction: largest |impulse| [N m s or N s]
+  T R_inverse{};                        ///< [1/kg]
+};
+
+inline constexpr double gap_share = 0.2;  ///< β: of a penetration that is taken back in a step
+inline constexpr double gap_speed = 1;    ///< fastest [m/s or rad/s]
+
+/// Least velocity of a row whose gap is φ: −φ/h where it is open, min(β |φ|/h, gap_speed) where it is not.
+template <class T> [[nodiscard]] T target_of_gap(const T& gap, const T& h) {
+  if (!(gap < T(0))) return -gap / h;
+  const T speed = T(gap_share) * (-gap) / h;
+  return speed < T(gap_speed) ? speed : T(gap_speed);
+}
+
+}  // namespace delassus::simulation

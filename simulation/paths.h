@@ -1,0 +1,79 @@
+// How velocities follow from forces: by what rows there are.
+//
+//   free        δ = M̂⁻¹ h f                                                    articulated-body factor
+//   equations   M̂ δ − Jᵀλ = h f,  J δ + R⁻¹λ = −J ν                            one solve_kkt of an operator
+// for the change δ = ν⁺ − ν of the velocities and the impulses λ of the rows. Solved for the change, not for ν⁺: what is rounded is of
+// order h.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "algorithms/dynamics/tree_operators.h"
+#include "algorithms/factors/factor.h"
+#include "algorithms/operators/operators.h"
+#include "simulation/terms.h"
+
+namespace delassus::simulation {
+
+/// What a step came to.
+struct StepReport {
+  Report report;             ///< of the factor, or of the operator of equations
+  std::string_view path;     ///< the path taken
+  Index rows = 0;            ///< rows of this step
+  int iterations = 0;        ///< of a solver
+  double residual = 0;       ///< of a solver [m/s]
+  double drift = 0, left = 0;  ///< largest |φ| that the step made, and that closing left [m or rad]
+  std::string message;       ///< what is wrong, in words, where it is not ok
+  [[nodiscard]] bool ok() const { return report.ok() && message.empty(); }
+};
+
+template <class T> class Path {
+ public:
+  virtual ~Path() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// δ (n) and λ of the step's rows, equations first.
+  virtual StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) = 0;
+  /// What of the last step the next one starts from.
+  virtual void remember(const Moment<T>&, State<T>&) {}
+  [[nodiscard]] virtual Index bytes() const = 0;
+};
+
+template <class T> class FreePath final : public Path<T> {
+ public:
+  explicit FreePath(std::shared_ptr<const Structure> structure);
+  [[nodiscard]] std::string_view name() const override { return "free"; }
+  StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
+  [[nodiscard]] Index bytes() const override { return factor_.bytes() + work_.size() * static_cast<Index>(sizeof(T)); }
+
+ private:
+  std::shared_ptr<const Structure> structure_;  // without rows
+  delassus::Plan plan_;
+  Factor<T> factor_;
+  Workspace<T> work_;
+  VectorX<T> push_;
+};
+
+template <class T> class EquationsPath final : public Path<T> {
+ public:
+  EquationsPath(std::shared_ptr<const Structure> structure, Damping<T> damping, const std::string& op, double accuracy);
+  [[nodiscard]] std::string_view name() const override { return "equations"; }
+  StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
+  [[nodiscard]] Index bytes() const override { return operator_->bytes() + work_.size() * static_cast<Index>(sizeof(T)); }
+
+  /// Numbers for `correct`, after a step that was solved by others.
+  void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_); }
+  /// The shortest change d of the joints, in the norm of M̂, with J d + R⁻¹μ = −gap, by the factor of the last step.
+  Report correct(const VectorX<T>& gap, VectorX<T>& d);
+
+ private:
+  std::unique_ptr<Operator<T>> operator_;
+  Damping<T> damping_;
+  Report taken_;
+  double accuracy_;
+  Workspace<T> work_;
+  TreeOperators<T> tree_;
+  MatrixX<T> push_, wanted_, motion_, rows_, nu_;
+};
+
+}  // namespace delassus::simulation

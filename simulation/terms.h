@@ -1,0 +1,85 @@
+// What an effect may contribute to a step: terms, each an interface without flags. An effect implements those it has; the plan keeps
+// a list of each, and the step is a loop over the lists.
+//
+//   inertia     on the diagonal of M̂                  armature, implicit damping h d and springs h² k
+//   force       on the right-hand side, at q and ν       gravity, velocity products, wrenches, …
+//   detection   which rows there are now
+//   rows        rows with a cone, a target, a coefficient
+//   event       what happens between two steps
+#pragma once
+
+#include "algorithms/mechanism/mechanism.h"
+#include "models/contacts.h"
+#include "simulation/cone_rows.h"
+#include "simulation/state.h"
+
+namespace delassus::simulation {
+
+/// A step, as its terms see it: numbers at the start of the step.
+template <class T> class Moment {
+ public:
+  Moment(const Model& scene_model, const Mechanism<T>& frames, const T& step) : model(&scene_model), mechanism(&frames), h(step) {}
+
+  const Model* model;
+  const Mechanism<T>* mechanism;  ///< its frames at q
+  T h;                            ///< [s]
+  const State<T>* state = nullptr;
+  Problem<T>* problem = nullptr;  ///< S and H at q, rows that always hold; inertia terms add to its armature
+  VectorX<T>* force = nullptr;    ///< n: force terms add to it [N m or N]
+  std::vector<RowSet<T>>* rows = nullptr;
+  struct Touching {
+    ContactPoint point;
+    double R_inverse;  ///< [1/kg]
+  };
+  std::vector<Touching> touching;  ///< detection terms add to it
+  double drift = 0, left = 0;      ///< largest |φ| of equations after the step, and after closing [m or rad]
+
+  /// Frames of the bodies; computed when the first term asks.
+  [[nodiscard]] const Poses<T>& poses() {
+    if (!has_poses_) mechanism->poses(poses_);
+    has_poses_ = true;
+    return poses_;
+  }
+  void start() {
+    has_poses_ = false;
+    problem->armature.assign(problem->armature.size(), T(0));
+    force->setConstant(T(0));
+    rows->clear();
+    touching.clear();
+    drift = left = 0;
+  }
+
+ private:
+  Poses<T> poses_;
+  bool has_poses_ = false;
+};
+
+template <class T> struct InertiaTerm {
+  virtual ~InertiaTerm() = default;
+  virtual void add_inertia(Moment<T>& now) = 0;
+};
+template <class T> struct ForceTerm {
+  virtual ~ForceTerm() = default;
+  virtual void add_force(Moment<T>& now) = 0;
+};
+template <class T> struct DetectionTerm {
+  virtual ~DetectionTerm() = default;
+  virtual void detect(Moment<T>& now) = 0;
+};
+template <class T> struct RowsTerm {
+  virtual ~RowsTerm() = default;
+  virtual void add_rows(Moment<T>& now) = 0;
+};
+template <class T> struct EventTerm {
+  virtual ~EventTerm() = default;
+  /// After the step: `next` is its end.
+  virtual void after(Moment<T>& now, State<T>& next) = 0;
+};
+
+/// Owner of terms: what a row of the table of effects makes.
+struct Effect {
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual Index bytes() const = 0;
+};
+
+}  // namespace delassus::simulation
