@@ -25,6 +25,7 @@ void add_accuracy(options::Command& app, Run& run);
 void add_bench(options::Command& app, Run& run);
 void add_report(options::Command& app, Run& run);
 void add_survey(options::Command& app, Run& run);
+void add_simulate(options::Command& app, Run& run);
 void add_stress(options::Command& app, Run& run);
 void add_replay(options::Command& app, Run& run);
 

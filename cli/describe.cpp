@@ -181,7 +181,7 @@ void print_text(const json& j, const Model& model, bool joints_too) {
   }
   std::printf("effects\n");
   for (const json& e : j["effects"])
-    std::printf("  %s %-15s %s\n", e["called_for"].get<bool>() ? "+" : "-", e["name"].get<std::string>().c_str(),
+    std::printf("  %s %-19s %s\n", e["called_for"].get<bool>() ? "+" : "-", e["name"].get<std::string>().c_str(),
                 e["why"].get<std::string>().c_str());
   std::printf("operators\n");
   for (const json& o : j["operators"]) {

@@ -96,6 +96,13 @@ void print_markdown(const std::string& table, const json& rows) {
     }
     return;
   }
+  if (table == "effects") {
+    std::printf("| effect | what it is | called for by | energy |\n|---|---|---|---|\n");
+    for (const json& r : rows)
+      std::printf("| %s | %s | %s | %s |\n", r["name"].get<std::string>().c_str(), r["summary"].get<std::string>().c_str(),
+                  r["called_by"].get<std::string>().c_str(), r["energy"].get<std::string>().c_str());
+    return;
+  }
   const char* last = table == "laws" ? "bound" : table == "defects" ? "base" : table == "references" ? "trusted" : nullptr;
   std::printf("| %s | %s |%s\n|---|---|%s\n", table.c_str(), table == "laws" ? "identity" : "what it is",
               last ? (std::string(" ") + last + " |").c_str() : "", last ? "---|" : "");

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   limit_memory();
   delassus::laws::count_allocations();
   Run run;
-  for (auto* add : {add_list, add_describe, add_check, add_apply, add_dynamics, add_export, add_bench, add_accuracy, add_report, add_stress, add_survey, add_replay}) add(app, run);
+  for (auto* add : {add_list, add_describe, add_check, add_apply, add_dynamics, add_export, add_bench, add_accuracy, add_report, add_simulate, add_stress, add_survey, add_replay}) add(app, run);
   const std::vector<std::string> known = app.subcommands();
   if (argc > 1 && argv[1][0] != '-' && std::find(known.begin(), known.end(), argv[1]) == known.end())
     return fail("there is no subcommand " + delassus::in_quotes(argv[1]) + " (accepted: " + delassus::did_you_mean(argv[1], known) + listed(known) + "; --help says what each does)", bad_input);

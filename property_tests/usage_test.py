@@ -152,5 +152,27 @@ if "WARNING" in printed([delassus, "check", "cassie", "--digits", "--damping", "
     failures.append("check --digits warns of a problem that lcaba solves")
 printed([delassus, "list", "effects"], "gravity", "armature")
 
+
+# A scene that moves.
+hammer = pathlib.Path(__file__).parent.parent / "docs/hammer.yaml"
+printed([delassus, "simulate", hammer, "--duration", "0.02"], "20 steps of 0.001 s", "drift", "residual")
+printed([delassus, "simulate", hammer, "--explain"], "hammer.yaml:2", "no joint has armature", "path cones")
+printed([delassus, "simulate", hammer, "--explain", "--without", "contacts"], "left out", "nothing to act on without contacts", "path equations")
+refused([delassus, "simulate", hammer, "--without", "contact"], "contact", "did you mean contacts?")
+refused([delassus, "simulate", hammer, "--step", "0"], "--step", "0")
+refused([delassus, "simulate", hammer, "--solver", "newton"], "newton")
+with tempfile.TemporaryDirectory() as folder:
+    files = [str(pathlib.Path(folder) / name) for name in ("a.csv", "b.csv", "run.html")]
+    for file in files:
+        printed([delassus, "simulate", hammer, "--duration", "0.05", "--record", file], "50 steps")
+    if pathlib.Path(files[0]).read_bytes() != pathlib.Path(files[1]).read_bytes():
+        failures.append("simulate: two runs of one scene differ")
+    if len(pathlib.Path(files[0]).read_text().splitlines()) != 52:
+        failures.append("simulate --record: not a line for the start and each of 50 steps")
+    page = pathlib.Path(files[2]).read_text()
+    if "http" in page or '"frames":[' not in page:
+        failures.append("simulate --record run.html: no recording in it, or it names something elsewhere")
+    refused([delassus, "simulate", hammer, "--duration", "0.01", "--record", str(pathlib.Path(folder) / "none" / "a.csv")], "--record", "cannot be written")
+
 print("\n".join(failures) or "every command line is refused with its reason")
 sys.exit(1 if failures else 0)
