@@ -3,14 +3,14 @@
 // Every bound is a vector of m non-negative numbers, one per row, in the unit of the row it bounds. Absolute values
 // are taken entry by entry. With
 //   J_abs = Σ |K_e^i||S_k| (and |𝒦_i|) over paths,
-//   M_bound_kl = d_k d_l for joints k, l on one path, 0 otherwise;  d_k² = Σ_i (|S_k|ᵀ h_i)² + armature_k,  h_i = √diag H_i
+//   M_bound_kl = (d_k d'_l + d'_k d_l)/2 for joints on one path, 0 otherwise;  d_k² = Σ_i (|S_k|ᵀ h_i)² + armature_k,  h_i = √diag H_i
 // a relative change of at most ε in every number of S, K, 𝒦, H, armature, R⁻¹ (a number may change differently on
 // every path it is used on) changes J by |δJ| ≤ 2ε J_abs, and M by |δM| ≤ 3ε M_bound, to first order; and a factor
 // M = L D Lᵀ in rounded arithmetic, by joints or by bodies, is exact for some M + δM with |δM| ≤ c ε |L||D||Lᵀ| ≤ c ε M_bound
-// (Higham, Accuracy and Stability, section 10.1). The factors are left to the 30.
-//
+// (Higham, section 10.1). d' = Cᵀd, C_i = |L⁻ᵀ||Lᵀ| of D_i = L diag Lᵀ: a joint is eliminated in the basis L⁻ᵀ of its degrees of
+// freedom (factor.h), which is far from orthogonal where a weak one comes before a strong one; C = 1 for one. Factors: the 30.
 // apply    y = J M⁻¹ Jᵀ x + R⁻¹ x gives   δy = δJ M⁻¹Jᵀx + J M⁻¹ δJᵀ x − J M⁻¹ δM M⁻¹ Jᵀ x + δR⁻¹ x, hence
-//            apply_sensitivity(x) = J_abs|M⁻¹|J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|
+//            apply_sensitivity(x) = J_abs (C|M⁻¹| + |M⁻¹|Cᵀ)/2 J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|
 //          and ε J_abs|M⁻¹|M_bound|M⁻¹|M_bound|M⁻¹|J_absᵀ|x|, of second order: it counts where the others are zero because both
 //          couplings of two branches to the joint between them happen to cancel exactly, which rounding does not see.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
