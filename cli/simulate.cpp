@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 struct Options {
   std::string scene, duration = "1s", record, plot;
   bool as_json = false, explain = false;
+  std::optional<double> gravity;
   std::int64_t every = 0;  ///< 0: every step, or 60 pictures a second
   simulation::Settings settings;
   SceneOptions opening;
@@ -190,7 +191,8 @@ std::vector<std::string> solver_names() {
 }
 
 int simulate(const Options& o) {
-  const Scene scene = open(o.scene, o.opening);
+  Scene scene = open(o.scene, o.opening);
+  if (o.gravity) scene.has_gravity = true, scene.gravity = {0, 0, -*o.gravity}, scene.motion.where["gravity"] = "--gravity";
   if (o.explain) {
     const json j = explain_json(scene, o.settings);
     if (o.as_json) std::printf("%s\n", j.dump(1).c_str());
@@ -215,6 +217,10 @@ void add_simulate(options::Command& app, Run& run) {
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--duration", o->duration, "simulated time: 10, 10s, 5m, 1h")->check(options::duration())->capture_default_str();
   c->add_option("--step", o->settings.step, "step [s]")->check(options::above(0, "s"))->capture_default_str();
+  std::vector<std::string> integrators;
+  for (const auto& row : simulation::integrators()) integrators.emplace_back(row.name);
+  c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta: explicit, of order 4, scenes without rows")->check(options::one_of(integrators))->capture_default_str();
+  c->add_option("--gravity", o->gravity, "acceleration along −z instead of the scene's [m/s²]: a robot's file has none")->check(options::at_least(0, "m/s²"));
   c->add_option("--record", o->record, "FILE.csv or FILE.json: q, ν, energies, rows, residual and drift of every step; FILE.html: a page that plays the run");
   c->add_option("--every", o->every, "record every so many steps (default: 1; 60 a second for a page)")->check(options::whole(1));
   c->add_option("--plot", o->plot, "FILE.svg: energies over time");

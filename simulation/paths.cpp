@@ -30,7 +30,7 @@ template <class T> StepReport FreePath<T>::velocities(Moment<T>& now, VectorX<T>
   out.report = factor_.start(*now.problem);
   if (out.report.ok()) out.report = factor_.update_undamped();
   if (!out.report.ok()) return out;
-  push_ = now.h * *now.force;
+  push_ = now.weight * *now.force;
   change.resize(push_.size());
   factor_.solve(static_cast<const T*>(nullptr), push_.data(), static_cast<T*>(nullptr), change.data(), work_.data());
   if (!finite(change)) out.report.status = Status::not_finite;

@@ -1,6 +1,6 @@
 // How velocities follow from forces: by what rows there are.
 //
-//   free        δ = M̂⁻¹ h f                                                    articulated-body factor
+//   free        δ = M̂⁻¹ h f, or M⁻¹ f where accelerations are asked for        articulated-body factor
 //   equations   M̂ δ − Jᵀλ = h f,  J δ + R⁻¹λ = −J ν                            one solve_kkt of an operator
 // for the change δ = ν⁺ − ν of the velocities and the impulses λ of the rows. Solved for the change, not for ν⁺: what is rounded is of
 // order h.

@@ -23,6 +23,7 @@ struct Settings {
   std::vector<std::string> without;                  ///< effects left out though the scene calls for them
   bool everything = false;                           ///< all effects, also those that provably vanish
   const std::vector<EffectRow>* table = &effects();  ///< another table is another program: the tests of absence
+  std::string integrator = "euler";                  ///< a row of integrators()
   std::string op = "ladder";                         ///< operator of equations
   double accuracy = 1e-10;                           ///< asked of it: relative, in the energy norm
   std::string solver;                                ///< of cones; empty: usual_solvers(), one after another

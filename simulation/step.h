@@ -1,4 +1,4 @@
-// A scene that moves: semi-implicit Euler on the manifold, at velocity level.
+// A scene that moves: semi-implicit Euler on the manifold, at velocity level (or another row of integrators.h).
 //
 //   M̂ = M + h d + h² k                              inertia terms
 //   M̂ (ν⁺ − ν) − Jᵀλ = h f(q, ν)                    force terms
@@ -11,7 +11,9 @@
 // Threads  one each. Nothing allocates in a step of the free path after the first.
 #pragma once
 
+#include "simulation/integrators.h"
 #include "simulation/plan.h"
+#include "simulation/runge_kutta.h"
 
 namespace delassus::simulation {
 
@@ -23,7 +25,7 @@ template <class T> class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// One step of h. When the report is not ok the state is that before the step.
-  [[nodiscard]] const StepReport& step();
+  [[nodiscard]] const StepReport& step() { return (this->*take_)(); }
 
   [[nodiscard]] const State<T>& state() const { return state_; }
   /// Goes on from a state that was saved. @throws std::logic_error when it is another model's.
@@ -39,6 +41,10 @@ template <class T> class Simulation {
   [[nodiscard]] const std::vector<RowSet<T>>& rows() const { return rows_; }
 
  private:
+  void gather();  // numbers and terms at now_.state
+  const StepReport& euler();
+  const StepReport& runge_kutta();
+
   Settings settings_;
   Plan<T> plan_;
   Advance<T> advance_;
@@ -48,6 +54,8 @@ template <class T> class Simulation {
   VectorX<T> force_, change_, impulses_;
   Moment<T> now_;
   StepReport report_;
+  std::unique_ptr<RungeKutta<T>> stages_;
+  const StepReport& (Simulation::*take_)() = &Simulation::euler;
 };
 
 }  // namespace delassus::simulation
