@@ -61,21 +61,6 @@ template <class F> std::int64_t counted(F&& f) {
 
 }  // namespace
 
-VectorX<double> sample_vector(Index n) {
-  VectorX<double> x(n);
-  for (Index i = 0; i < n; ++i) {
-    const double t = static_cast<double>(i + 1) * 0.6180339887498949;
-    x[i] = t - std::floor(t) - 0.5;
-  }
-  return x;
-}
-
-Damping<double> other_damping(Damping<double> damping) {
-  for (double& d : damping.diagonal) d *= 1.5;
-  for (auto& block : damping.blocks) block.R_inverse *= 1.5;
-  return damping;
-}
-
 Operations count_operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping) {
   if (!std::get<Maker<Counted>>(row.makers)) return {};
   const Problem<Counted> p = problem.cast<Counted>();

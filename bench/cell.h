@@ -4,6 +4,7 @@
 #include "algorithms/delassus.h"
 #include "algorithms/mechanism/model.h"
 #include "bench/results.h"
+#include "bench/uses.h"
 
 namespace delassus::bench {
 
@@ -24,11 +25,5 @@ struct Limits {
 
 /// Time of kinematics(model, q) into given storage.
 [[nodiscard]] Timing time_kinematics(const Model& model, const VectorX<double>& q, double budget);
-
-/// The vector every timing uses: entries in [−1/2, 1/2), the multiples of the golden ratio modulo 1. Shape n.
-[[nodiscard]] VectorX<double> sample_vector(Index n);
-
-/// The same damping, every entry half as large again.
-[[nodiscard]] Damping<double> other_damping(Damping<double> damping);
 
 }  // namespace delassus::bench

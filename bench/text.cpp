@@ -1,5 +1,6 @@
 #include "bench/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -73,6 +74,26 @@ std::string pad_left(const std::string& s, std::size_t width) {
 std::string pad_right(const std::string& s, std::size_t width) {
   const std::size_t n = width_of(s);
   return n < width ? s + std::string(width - n, ' ') : s;
+}
+
+std::string markdown_table(const std::vector<std::vector<std::string>>& rows, std::size_t left) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows) {
+    width.resize(std::max(width.size(), row.size()), 3);
+    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], width_of(row[c]));
+  }
+  std::string out;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < width.size(); ++c) {
+      const std::string cell = c < rows[r].size() ? rows[r][c] : "";
+      out += "| " + (c < left ? pad_right(cell, width[c]) : pad_left(cell, width[c])) + " ";
+    }
+    out += "|\n";
+    if (r > 0) continue;
+    for (std::size_t c = 0; c < width.size(); ++c) out += "|" + std::string(width[c] + 1, '-') + (c < left ? "-" : ":");
+    out += "|\n";
+  }
+  return out;
 }
 
 }  // namespace delassus::bench

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace delassus::bench {
 
@@ -22,5 +23,8 @@ namespace delassus::bench {
 /// Pads with spaces to a width counted in characters (UTF-8 code points).
 [[nodiscard]] std::string pad_left(const std::string& s, std::size_t width);
 [[nodiscard]] std::string pad_right(const std::string& s, std::size_t width);
+/// A table in Markdown, its columns as wide as their widest cell; the first row is the head. Columns stand to the right but the first
+/// `left`, and empty cells at the end of a row are filled in.
+[[nodiscard]] std::string markdown_table(const std::vector<std::vector<std::string>>& rows, std::size_t left = 1);
 
 }  // namespace delassus::bench

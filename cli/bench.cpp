@@ -6,6 +6,7 @@
 #include "bench/machine.h"
 #include "bench/scene_facts.h"
 #include "bench/text.h"
+#include "cli/bench_results.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "property_tests/options.h"
@@ -18,7 +19,11 @@ struct Options {
   std::vector<std::string> scenes, ops;
   std::string baseline;
   double budget = 0.02, slack = 1.5;
-  bool as_json = false;
+  bool as_json = false, table1 = false, swimmers = false;
+  std::vector<std::string> compared;
+  std::string from, probe, pictures;
+  std::int64_t largest = 100000;
+  double longest = 1, gigabytes = 1;
   SceneOptions opening;
 };
 
@@ -97,6 +102,9 @@ int compare_all(const json& scenes, json baseline, double slack) {
 }
 
 int run_bench(const Options& o) {
+  if (!o.compared.empty()) return run_compare(o.compared, o.slack, o.as_json);
+  if (o.table1) return run_table1({o.scenes, o.ops, o.from, o.probe, o.budget, o.as_json});
+  if (o.swimmers) return run_swimmers({o.from, o.pictures, o.budget, o.longest, o.gigabytes, o.largest, o.as_json});
   json baseline;
   if (!o.baseline.empty()) baseline = read_baseline(o.baseline);
   json out = {{"units", {{"time", "µs per call"}, {"memory", "bytes"}}}, {"scenes", json::array()}};
@@ -118,12 +126,22 @@ void add_bench(options::Command& app, Run& run) {
   c->add_option("--scene", o->scenes, "only these scenes (also files and swimmer:N)");
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--budget", o->budget, "seconds of timing per phase")->check(options::above(0, "s"))->capture_default_str();
+  options::Option* table1 = c->add_flag("--table1", o->table1, "the paper's Table I: thirteen scenes, every column, every operator, beside the paper's figures (docs/results.md)");
+  options::Option* swimmers = c->add_flag("--swimmers", o->swimmers, "the paper's Fig. 2: every operator on swimmers of growing length, with the slopes");
+  swimmers->excludes(table1);
+  c->add_option("--from", o->from, "print what --table1 --json or --swimmers --json wrote instead of measuring");
+  c->add_option("--largest", o->largest, "links of the longest swimmer")->check(options::whole(3))->needs(swimmers)->capture_default_str();
+  c->add_option("--longest", o->longest, "an operator is left out where one of its phases would take longer [s]")->check(options::above(0, "s"))->needs(swimmers)->capture_default_str();
+  c->add_option("--memory", o->gigabytes, "or it would hold more [GB]")->check(options::above(0, "GB"))->needs(swimmers)->capture_default_str();
+  c->add_option("--pictures", o->pictures, "directory for swimmers_product.svg and swimmers_solve.svg")->needs(swimmers);
+  c->add_option("--compare", o->compared, "two files of results, before and after: what changed by more than its spread explains (nothing is measured)");
+  c->add_option("--cache-lines", o->probe, "a phase_probe (scripts/build avx2 phase_probe: build/avx2/bench/phase_probe) to count distinct cache lines with, by valgrind")->check(options::existing_file())->needs(table1);
   c->add_option("--baseline", o->baseline, "JSON of an earlier run on the same machine");
   c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(options::above(0, ""))->capture_default_str();
   c->add_flag("--json", o->as_json, "{machine, units, scenes}");
   add_scene_options(*c, o->opening);
-  c->footer("Times are the lowest of several batches. Exit code 3 when a phase is slower than slack × baseline or needs "
-            "more counted operations.");
+  c->footer("Times are the lowest of several batches; medians with --table1 and --swimmers. Exit code 3 when a phase is slower than slack × baseline or needs "
+            "more counted operations; with --compare, significantly.");
   c->callback([=, &run] { run = [=] { return run_bench(*o); }; });
 }
 

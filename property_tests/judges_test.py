@@ -171,6 +171,27 @@ with tempfile.TemporaryDirectory() as name:
     against(lambda c: c["microseconds"]["solve"].update(lowest=1e-6), 3)
     against(lambda c: c["operations"].update(solve=c["operations"]["solve"] - 1), 3)
     against(lambda c: c["operations"].update(solve=c["operations"]["solve"] + 1), 0)
+
+    # bench --table1: no hole, the same text from the file; --compare: what changed, and exit code 3 where it is slower.
+    table = data("bench", "--table1", "--scene", scene, "--op", "aba_sweep", "--op", "lcaba", "--op", "ltl_osim", "--budget", "0.002", "--json")
+    entries = {e["operator"]: e for e in table["table1"][0]["operators"]}
+    for op, e in entries.items():
+        expect(f"table1: no hole in {op}", all(("none" in use) != ("microseconds" in use) for use in e["uses"].values()))
+    expect("table1: who has what", entries["aba_sweep"]["uses"]["solve"] == {"none": "has no solve"} and "microseconds" in entries["lcaba"]["uses"]["new_damping"])
+    expect("table1: errors", entries["aba_sweep"]["product_error"] < 1e-12 and entries["lcaba"]["force_error"] < 1e-6)
+    before, after = folder / "table.json", folder / "slower.json"
+    before.write_text(json.dumps(table))
+    expect("table1 --from", scene in run("bench", "--table1", "--from", before))
+    run("bench", "--table1", "--from", folder / "x.json", code=2)
+    expect("compare: nothing changed", run("bench", "--compare", before, before).startswith("0 of "))
+    use = entries["lcaba"]["uses"]["solve"]["microseconds"]
+    use.update(median=1e6, quartiles=[1e6, 1e6])
+    after.write_text(json.dumps(table))
+    expect("compare: slower", f"{scene} · lcaba · solve" in run("bench", "--compare", before, after, code=3))
+    run("bench", "--compare", after, before)
+    swimmers = data("bench", "--swimmers", "--largest", 10, "--budget", "0.001", "--json")
+    expect("swimmers", [s["links"] for s in swimmers["swimmers"]] == [3, 10] and all(len(s["operators"]) > 10 for s in swimmers["swimmers"]))
+
     hard = folder / "hard.yaml"
     hard.write_text("boxes:\n  - {name: b, mass: 1, size: [1, 1, 1]}\nconstraints:\n  - {kind: point, of: b, at: [0, 0, 0], to: world}\ndamping: 0\n")
     cell = data("bench", "--scene", hard, "--op", "lcaba", "--budget", "0.001", "--json")["scenes"][0]["operators"][0]

@@ -1,0 +1,78 @@
+#include "cli/bench_results.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "bench/compare.h"
+#include "bench/figure2.h"
+#include "bench/report.h"
+#include "bench/table1.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "cli/interrupt.h"
+
+namespace delassus::cli {
+
+namespace {
+
+json read_json(const std::string& file, const std::string& accepted) {
+  std::ifstream stream(file);
+  if (!stream) throw ModelError(file, "file", "cannot be read", accepted);
+  json j = json::parse(stream, nullptr, false);
+  if (j.is_discarded()) throw ModelError(file, "JSON", "is broken, or holds a number beyond double", accepted);
+  return j;
+}
+
+template <class Results> Results read_results(const std::string& file, const std::string& accepted) {
+  try {
+    return read_json(file, accepted).get<Results>();
+  } catch (const json::exception& e) {
+    throw ModelError(file, "JSON", std::string("holds other results: ") + e.what(), accepted);
+  }
+}
+
+void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+template <class Results> void print(const Results& r, bool as_json, std::string (*text)(const Results&)) {
+  std::printf("%s", as_json ? (json(r).dump(1) + "\n").c_str() : text(r).c_str());
+}
+
+}  // namespace
+
+int run_table1(const Table1Options& o) {
+  if (!o.from.empty()) {
+    print(read_results<bench::TableOne>(o.from, "what `delassus bench --table1 --json` prints"), o.as_json, bench::table_text);
+    return good;
+  }
+  keep_on_interrupt();
+  const bench::TableOptions options{o.scenes, o.ops.empty() ? std::vector<const OperatorRow*>{} : chosen_operators(o.ops), o.budget, o.probe, interrupted};
+  print(bench::measure_table(options, say), o.as_json, bench::table_text);
+  return end_of_run(good, "scenes are missing");
+}
+
+int run_swimmers(const SwimmersOptions& o) {
+  bench::Figure2 f;
+  if (!o.pictures.empty()) bench::check_writable(o.pictures);
+  if (!o.from.empty()) {
+    f = read_results<bench::Figure2>(o.from, "what `delassus bench --swimmers --json` prints");
+  } else {
+    keep_on_interrupt();
+    f = bench::measure_swimmers(o.largest, o.budget, o.longest, 1e9 * o.gigabytes, say, interrupted);
+  }
+  print(f, o.as_json, bench::figure2_text);
+  if (!o.pictures.empty())
+    for (const bool solves : {false, true})
+      std::ofstream(std::filesystem::path(o.pictures) / (solves ? "swimmers_solve.svg" : "swimmers_product.svg")) << bench::figure2_picture(f, solves);
+  return o.from.empty() ? end_of_run(good, "lengths are missing") : good;
+}
+
+int run_compare(const std::vector<std::string>& files, double slack, bool as_json) {
+  const std::string accepted = "what `delassus bench --json` or `delassus bench --table1 --json` prints, or a report's results.json";
+  if (files.size() != 2) throw ModelError("", "--compare", std::to_string(files.size()) + " files", "two: before and after");
+  const bench::Comparison c = bench::compare(read_json(files[0], accepted), read_json(files[1], accepted), files[0], files[1]);
+  print(c, as_json, bench::comparison_text);
+  return c.worse(slack) > 0 ? slower : good;
+}
+
+}  // namespace delassus::cli

@@ -1,0 +1,27 @@
+// `delassus bench --table1`, `--swimmers` and `--compare`: results measured, or printed from files of results.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace delassus::cli {
+
+struct Table1Options {
+  std::vector<std::string> scenes, ops;
+  std::string from, probe;   ///< results to print instead of measuring; a phase_probe to count cache lines with
+  double budget = 0.03;
+  bool as_json = false;
+};
+struct SwimmersOptions {
+  std::string from, pictures;   ///< results to print instead of measuring; a directory for the pictures
+  double budget = 0.02, longest = 1, gigabytes = 1;
+  std::int64_t largest = 100000;
+  bool as_json = false;
+};
+
+// They return the exit code.
+[[nodiscard]] int run_table1(const Table1Options& o);
+[[nodiscard]] int run_swimmers(const SwimmersOptions& o);
+[[nodiscard]] int run_compare(const std::vector<std::string>& files, double slack, bool as_json);
+
+}  // namespace delassus::cli
