@@ -22,7 +22,7 @@ json plan_json(const Scene& scene, const Structure& structure, Matrix matrix) {
   const Plan plan = make_plan(structure, matrix);
   json order = json::array();
   for (const int body : plan.body) order.push_back(scene.model.bodies[static_cast<std::size_t>(body)].name);
-  std::vector<int> first = plan.constraint_pairs;
+  std::vector<int> first(plan.constraint_pairs.begin(), plan.constraint_pairs.end());
   std::sort(first.begin(), first.end());
   const auto before = std::unique(first.begin(), first.end()) - first.begin();
   return {{"order", order}, {"blocks_of_constraints", before}, {"blocks_with_fill", plan.blocks},

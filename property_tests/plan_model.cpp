@@ -13,9 +13,14 @@ void expect(bool holds, const char* what, Index where) {
   if (!holds) throw std::runtime_error(std::string(what) + " at " + std::to_string(where));
 }
 
+template <class E> const E& at(std::span<const E> list, std::size_t k) {
+  expect(k < list.size(), "a list that ends too early", static_cast<Index>(k));
+  return list[k];
+}
+
 class Model {
  public:
-  Model(const Plan& plan, const Structure& s, Matrix matrix, Branches branches) : plan_(plan), s_(s), matrix_(matrix), left_(s.bodies(), 1), near_(s.bodies()) {
+  Model(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of) : plan_(plan), s_(s), matrix_(matrix), order_of_(order_of), left_(s.bodies(), 1), near_(s.bodies()) {
     for (Index i = 0; i < s.bodies(); ++i) depth_.push_back(s.parent[i] == ground ? 0 : depth_[s.parent[i]] + 1);
     std::set<Index> holds_rows;
     for (const auto& e : s.link_constraints)
@@ -70,19 +75,21 @@ class Model {
 
   void check_constraints() {
     std::size_t pair = 0, e = 0;
+    expect(plan_.first_constraint_pair.size() == s_.link_constraints.size() + 1, "number of constraints", 0);
     for (const auto& c : s_.link_constraints) {
-      expect(plan_.first_constraint_pair.at(e) == static_cast<int>(pair), "first pair of constraint", static_cast<Index>(e));
+      expect(plan_.first_constraint_pair[e] == static_cast<int>(pair), "first pair of constraint", static_cast<Index>(e));
       ++e;
       for (std::size_t a = 0; matrix_ == Matrix::M_R && a < c.links.size(); ++a)
-        for (std::size_t b = a + 1; b < c.links.size(); ++b) expect_block(c.links[a].body, c.links[b].body, plan_.constraint_pairs.at(pair++), 0);
+        for (std::size_t b = a + 1; b < c.links.size(); ++b) expect_block(c.links[a].body, c.links[b].body, at(plan_.constraint_pairs, pair++), 0);
     }
-    expect(plan_.first_constraint_pair.at(e) == static_cast<int>(pair) && plan_.constraint_pairs.size() == pair, "pairs of constraints", 0);
+    expect(plan_.first_constraint_pair[e] == static_cast<int>(pair) && plan_.constraint_pairs.size() == pair, "pairs of constraints", 0);
   }
 
   void check_step(int i) {
     const Index body = plan_.body[i], p = s_.parent[body];
     expect(ready(body), "a body before its children", i);
-    for (Index other = 0; other < s_.bodies(); ++other) expect(!ready(other) || key(body) <= key(other), "not the smallest degree", i);
+    if (order_of_ != nullptr) expect(body == order_of_->body[i], "another order", i);
+    for (Index other = 0; order_of_ == nullptr && other < s_.bodies(); ++other) expect(!ready(other) || key(body) <= key(other), "not the smallest degree", i);
     expect(plan_.parent[i] == (p == ground ? -1 : plan_.step[p]), "parent", i);
     expect(plan_.first_column[i + 1] - plan_.first_column[i] == s_.dofs(body), "columns", i);
     const std::set<Index> q = clique(body);
@@ -90,7 +97,7 @@ class Model {
     for (const Index b : q) steps.insert(plan_.step[b]);
     int k = plan_.first_member[i], w = 0, pair = plan_.first_pair[i];
     for (const int j : steps) {
-      const Plan::Member member = plan_.members.at(static_cast<std::size_t>(k++));
+      const Plan::Member member = at(plan_.members, static_cast<std::size_t>(k++));
       expect(member.step == j, "members", i);
       if (near_[body].contains(plan_.body[j])) expect_block(body, plan_.body[j], member.block, i);
       else expect(member.block == -1, "a block that nothing couples", i);
@@ -99,7 +106,7 @@ class Model {
     expect(plan_.first_member[i + 1] == k && plan_.first_w[i + 1] - plan_.first_w[i] == w, "number of members", i);
     for (auto x = steps.begin(); x != steps.end(); ++x)
       for (auto y = std::next(x); y != steps.end(); ++y)
-        expect_block(plan_.body[*x], plan_.body[*y], plan_.pairs.at(static_cast<std::size_t>(pair++)), i);
+        expect_block(plan_.body[*x], plan_.body[*y], at(plan_.pairs, static_cast<std::size_t>(pair++)), i);
     expect(plan_.first_pair[i + 1] == pair, "number of pairs", i);
     left_[body] = 0;
     for (const Index a : q) {
@@ -132,6 +139,7 @@ class Model {
   const Plan& plan_;
   const Structure& s_;
   Matrix matrix_;
+  const Plan* order_of_;
   std::vector<char> left_;                // not yet eliminated
   std::vector<std::set<Index>> near_;     // N_i
   std::vector<Index> depth_;
@@ -142,9 +150,9 @@ class Model {
 
 }  // namespace
 
-std::string plan_broken(const Plan& plan, const Structure& s, Matrix matrix, Branches branches) {
+std::string plan_broken(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of) {
   try {
-    Model(plan, s, matrix, branches).check();
+    Model(plan, s, matrix, branches, order_of).check();
   } catch (const std::exception& e) {
     return e.what();
   }

@@ -6,25 +6,22 @@
 namespace delassus {
 
 template <class T> void BlockDiagonal<T>::analyze(const Structure& s) {
-  rows_.clear();
-  first_.clear();
-  for (const auto& e : s.link_constraints) rows_.push_back({e.row, e.rows});
-  for (const auto& j : s.joint_constraints) rows_.push_back({j.row, j.rows});
+  const std::size_t links = s.link_constraints.size(), rows = static_cast<std::size_t>(s.rows);
+  const std::size_t constraints = links + s.joint_constraints.size();
+  lists_.divide(Lists::Part{rows_, constraints}, Lists::Part{first_, constraints}, Lists::Part{constraint_of_, rows}, Lists::Part{has_dense_, constraints});
+  for (std::size_t e = 0; e < links; ++e) rows_[e] = {s.link_constraints[e].row, s.link_constraints[e].rows};
+  for (std::size_t e = links; e < constraints; ++e) rows_[e] = {s.joint_constraints[e - links].row, s.joint_constraints[e - links].rows};
   Index size = 0, largest = 0;
-  constraint_of_.assign(static_cast<std::size_t>(s.rows), 0);
-  for (std::size_t e = 0; e < rows_.size(); ++e) {
+  for (std::size_t e = 0; e < constraints; ++e) {
     const Index m = rows_[e].count;
     std::fill_n(constraint_of_.begin() + rows_[e].first, m, static_cast<Index>(e));
-    first_.push_back(size);
+    first_[e] = size;
     size += m * m;
     largest = std::max(largest, m * m);
   }
+  scalars_.divide(T(0), {{&diagonal_, rows}, {&dense_, static_cast<std::size_t>(size)}, {&scratch_, static_cast<std::size_t>(largest)}});
   off_.clear();
-  off_.reserve(static_cast<std::size_t>(s.rows));
-  has_dense_.assign(rows_.size(), 0);
-  diagonal_.assign(static_cast<std::size_t>(s.rows), T(0));
-  dense_.assign(static_cast<std::size_t>(size), T(0));
-  scratch_.assign(static_cast<std::size_t>(largest), T(0));
+  off_.reserve(rows);
   any_dense_ = false;
 }
 
@@ -105,11 +102,6 @@ template <class T> Report BlockDiagonal<T>::assign_inverse(const Damping<T>& dam
   }
   switch_off(diagonal_.data());
   return {};
-}
-
-template <class T> Index BlockDiagonal<T>::bytes() const {
-  return static_cast<Index>((diagonal_.size() + dense_.size() + scratch_.size()) * sizeof(T) +
-                            rows_.size() * (sizeof(Rows) + sizeof(Index) + 1) + 2 * constraint_of_.size() * sizeof(Index));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class BlockDiagonal<T>;

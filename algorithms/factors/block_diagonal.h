@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/kit/ldlt.h"
+#include "algorithms/kit/slab.h"
 #include "algorithms/problem/problem.h"
 
 namespace delassus {
@@ -25,7 +26,7 @@ template <class T> class BlockDiagonal {
     std::transform(other.diagonal_.begin(), other.diagonal_.end(), diagonal_.begin(), rounded);
     std::transform(other.dense_.begin(), other.dense_.end(), dense_.begin(), rounded);
     off_ = other.off_;
-    has_dense_ = other.has_dense_;
+    std::copy(other.has_dense_.begin(), other.has_dense_.end(), has_dense_.begin());
     any_dense_ = other.any_dense_;
   }
 
@@ -51,7 +52,7 @@ template <class T> class BlockDiagonal {
           y[rows_[e].first + r] = sum;
         }
   }
-  [[nodiscard]] Index bytes() const;
+  [[nodiscard]] Index bytes() const { return lists_.bytes() + scalars_.bytes() + static_cast<Index>(off_.capacity() * sizeof(Index)); }
 
  private:
   template <class U> friend class BlockDiagonal;
@@ -60,12 +61,14 @@ template <class T> class BlockDiagonal {
   struct Rows {
     Index first, count;
   };
-  std::vector<Rows> rows_;           // per constraint
-  std::vector<Index> first_;         // per constraint: its block in dense_
-  std::vector<Index> constraint_of_; // per row
+  std::span<Rows> rows_;            // per constraint
+  std::span<Index> first_;          // per constraint: its block in dense_
+  std::span<Index> constraint_of_;  // per row
+  std::span<char> has_dense_;       // per constraint
   std::vector<Index> off_;
-  std::vector<char> has_dense_;
-  std::vector<T> diagonal_, dense_, scratch_;
+  std::span<T> diagonal_, dense_, scratch_;
+  Lists lists_;
+  Slab<T> scalars_;
   bool any_dense_ = false;
 };
 

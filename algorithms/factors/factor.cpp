@@ -15,44 +15,74 @@ template <class T> void add_square(T* w, const T* k, const T* q, const T& weight
 }
 }  // namespace
 
-template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan) {
+namespace {
+std::size_t size(Index n) { return static_cast<std::size_t>(n); }
+}  // namespace
+
+template <class T> void Factor<T>::take_plan(const Structure& s, const Plan& plan) {
   structure_ = &s;
   plan_ = &plan;
-  const auto size = [](Index n) { return static_cast<std::size_t>(n); };
-  const std::size_t steps = size(plan.steps), active = size(plan.active()), columns = size(plan.first_column.back());
-  lists_.divide(-1, {{&vector_of_, steps}, {&first_child_, steps}, {&next_child_, steps}, {&first_joint_rows_, active + 1}, {&joint_weight_of_, active}});
-  fills_.divide(never, {{&filled_, steps}});
-  int vectors = 0, largest = 0;
-  for (int i = 0; i < plan.steps; ++i) {
-    if (plan.first_column[i + 1] - plan.first_column[i] > 1) vector_of_[i] = 6 * std::exchange(vectors, vectors + 1);
-    largest = std::max(largest, plan.first_w[i + 1] - plan.first_w[i]);
-  }
+  lists_.divide(Lists::Part{filled_, size(plan.steps)}, Lists::Part{first_child_, size(plan.steps)}, Lists::Part{next_child_, size(plan.steps)});
+  std::fill(first_child_.begin(), first_child_.end(), -1);
+  std::fill(next_child_.begin(), next_child_.end(), -1);
   find_sources();
-  links_.analyze(s, plan);
-  const std::size_t joint_k = size(s.joint_K_size), joint_weights = size(analyze_joint_rows());
-  scalars_.divide(T(0), {{&d_inverse_, columns}, {&armature_, columns}, {&shift_, columns}, {&joint_k0_, joint_k}, {&joint_k_, joint_k}, {&joint_weight_, joint_weights}});
-  sixes_.divide(Six<T>::zero(), {{&s_, columns}, {&w_, size(plan.first_w.back())}, {&s0_, size(6 * vectors)}, {&e_, size(6 * vectors)}, {&unscaled_, size(largest)}});
-  matrices_.divide(SixBySix<T>::zero(), {{&own_, plan.matrix == Matrix::M_R ? active : 0}, {&inertia_, steps}, {&block_, size(plan.blocks)}});
 }
 
-// The sum of n_i² of the joints of several degrees of freedom with rows.
-template <class T> int Factor<T>::analyze_joint_rows() {
-  const Plan& plan = *plan_;
-  joint_rows_.clear();
-  joint_rows_.reserve(structure_->joint_constraints.size());
-  int weights = 0;
-  Index constraint = static_cast<Index>(structure_->link_constraints.size());
-  for (const auto& j : structure_->joint_constraints) {
-    const int i = plan.step[j.body], step = i - plan.first_active, n = plan.first_column[i + 1] - plan.first_column[i];
-    joint_rows_.push_back({step, plan.first_column[i] - plan.first_column[plan.first_active], n, j.row, j.rows, j.first, constraint++});
-    if (n > 1 && joint_weight_of_[step] < 0) joint_weight_of_[step] = std::exchange(weights, weights + n * n);
+template <class T> void Factor<T>::analyze(const Structure& s, const Plan& plan) {
+  beside_ = nullptr;
+  take_plan(s, plan);
+  make_joint_rows();
+  links_.analyze(s, plan);
+  rows_ = &links_;
+  const auto largest_w = [&] {
+    int largest = 0;
+    for (int i = 0; i < plan.steps; ++i) largest = std::max(largest, plan.first_w[i + 1] - plan.first_w[i]);
+    return size(largest);
+  };
+  int vectors = 0, weights = 0;
+  for (int i = 0; i < plan.steps; ++i) {
+    const int n = plan.first_column[i + 1] - plan.first_column[i], step = i - plan.first_active;
+    vector_of_[i] = n > 1 ? 6 * std::exchange(vectors, vectors + 1) : -1;
+    if (step < 0) continue;
+    const bool weighted = n > 1 && first_joint_rows_[step + 1] > first_joint_rows_[step];
+    joint_weight_of_[step] = weighted ? std::exchange(weights, weights + n * n) : -1;
   }
-  std::stable_sort(joint_rows_.begin(), joint_rows_.end(),
-                   [](const JointRows& a, const JointRows& b) { return a.step < b.step; });
-  std::fill(first_joint_rows_.begin(), first_joint_rows_.end(), 0);
-  for (const JointRows& j : joint_rows_) ++first_joint_rows_[j.step + 1];
+  const std::size_t active = size(plan.active()), columns = size(plan.first_column.back()), joint_k = size(s.joint_K_size);
+  scalars_.divide(T(0), {{&d_inverse_, columns}, {&armature_, columns}, {&shift_, columns}, {&joint_k0_, joint_k}, {&joint_k_, joint_k}, {&joint_weight_, size(weights)}});
+  sixes_.divide(Six<T>::zero(), {{&s_, columns}, {&w_, size(plan.first_w.back())}, {&s0_, size(6 * vectors)}, {&e_, size(6 * vectors)}, {&unscaled_, largest_w()}});
+  matrices_.divide(SixBySix<T>::zero(), {{&own_, plan.matrix == Matrix::M_R ? active : 0}, {&inertia_, size(plan.steps)}, {&block_, size(plan.blocks)}});
+}
+
+template <class T> void Factor<T>::analyze_beside(const Factor& of_M_R, const Plan& plan) {
+  beside_ = &of_M_R;
+  take_plan(*of_M_R.structure_, plan);
+  rows_ = of_M_R.rows_;
+  vector_of_ = of_M_R.vector_of_, first_joint_rows_ = of_M_R.first_joint_rows_, joint_weight_of_ = of_M_R.joint_weight_of_, joint_rows_ = of_M_R.joint_rows_;
+  s0_ = of_M_R.s0_, armature_ = shift_ = of_M_R.armature_, joint_k0_ = of_M_R.joint_k0_;
+  const std::size_t columns = size(plan.first_column.back());
+  scalars_.divide(T(0), {{&d_inverse_, columns}, {&joint_k_, joint_k0_.size()}, {&joint_weight_, of_M_R.joint_weight_.size()}});
+  sixes_.divide(Six<T>::zero(), {{&s_, columns}, {&w_, size(plan.first_w.back())}, {&e_, s0_.size()}, {&unscaled_, 6}});
+  matrices_.divide(SixBySix<T>::zero(), {{&inertia_, size(plan.steps)}});
+}
+
+// By counting.
+template <class T> void Factor<T>::make_joint_rows() {
+  const Plan& plan = *plan_;
+  const auto& constraints = structure_->joint_constraints;
+  shared_.divide(Lists::Part{vector_of_, size(plan.steps)}, Lists::Part{first_joint_rows_, size(plan.active() + 1)}, Lists::Part{joint_weight_of_, size(plan.active())},
+                 Lists::Part{joint_rows_, constraints.size()});
+  const auto step_of = [&](const auto& j) { return plan.step[j.body] - plan.first_active; };
+  for (const auto& j : constraints) ++first_joint_rows_[step_of(j) + 1];
   for (std::size_t i = 1; i < first_joint_rows_.size(); ++i) first_joint_rows_[i] += first_joint_rows_[i - 1];
-  return weights;
+  for (std::size_t e = constraints.size(); e-- > 0;) {  // from the last one of each step on
+    const auto& j = constraints[e];
+    const int step = step_of(j), i = step + plan.first_active, n = plan.first_column[i + 1] - plan.first_column[i];
+    joint_rows_[--first_joint_rows_[step + 1]] = {step, plan.first_column[i] - plan.first_column[plan.first_active], n, j.row, j.rows, j.first,
+                                                  static_cast<Index>(structure_->link_constraints.size() + e)};
+  }
+  // entry i + 1 is now where step i begins
+  std::copy(first_joint_rows_.begin() + 1, first_joint_rows_.end(), first_joint_rows_.begin());
+  first_joint_rows_.back() = static_cast<int>(constraints.size());
 }
 
 // Where H_ii comes from when step i runs: a simple step leaves its part with itself for the parent to take, any other adds to
@@ -82,21 +112,35 @@ template <class T> Report Factor<T>::start(const Problem<T>& problem) {
       shift_[c] = armature_[c] = problem.armature[dof];
     }
   }
-  load_rows(problem);
-  const Report report = eliminate(0, plan_->first_active);
-  for (int i = 0; i < plan_->first_active; ++i)
-    if (plan_->simple(i) && !waits(i)) add(given(plan_->parent[i]), inertia_[i]);
-  return report;
-}
-
-template <class T> void Factor<T>::load_rows(const Problem<T>& problem) {
   links_.load(problem);
   std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
   std::copy(joint_k0_.begin(), joint_k0_.end(), joint_k_.begin());
+  started_ = eliminate(0, plan_->first_active);
+  for (int i = 0; i < plan_->first_active; ++i)
+    if (plan_->simple(i) && !waits(i)) add(given(plan_->parent[i]), inertia_[i]);
+  return started_;
+}
+
+template <class T> Report Factor<T>::start_beside() {
+  const Factor& other = *beside_;
+  const int first = plan_->first_active;
+  std::copy(other.s_.begin(), other.s_.end(), s_.begin());  // of several degrees of freedom: right in phase A, later overwritten
+  std::copy(other.e_.begin(), other.e_.end(), e_.begin());
+  std::copy_n(other.d_inverse_.begin(), plan_->first_column[first], d_inverse_.begin());
+  std::copy_n(other.w_.begin(), plan_->first_w[first], w_.begin());
+  std::copy(other.own_.begin(), other.own_.end(), inertia_.begin() + first);
+  std::copy(joint_k0_.begin(), joint_k0_.end(), joint_k_.begin());
+  return other.started_;
 }
 
 template <class T> void Factor<T>::move_rows(const Problem<T>& problem) {
-  load_rows(problem);
+  links_.load(problem);
+  std::copy(problem.joint_K.begin(), problem.joint_K.end(), joint_k0_.begin());
+  move_rows_beside();
+}
+
+template <class T> void Factor<T>::move_rows_beside() {
+  std::copy(joint_k0_.begin(), joint_k0_.end(), joint_k_.begin());
   for (int step = 0; step < plan_->active(); ++step) into_basis(step);
 }
 
@@ -147,8 +191,7 @@ template <class T> Index Factor<T>::workspace() const { return 8 * plan_->active
 template <class T> Index Factor<T>::solve_workspace() const { return 8 * plan_->steps + (plan_->first_column[plan_->steps] + 7) / 8 * 8; }
 
 template <class T> Index Factor<T>::bytes() const {
-  return links_.bytes() + sixes_.bytes() + scalars_.bytes() + matrices_.bytes() + lists_.bytes() + fills_.bytes() +
-         static_cast<Index>(joint_rows_.size() * sizeof(JointRows));
+  return links_.bytes() + sixes_.bytes() + scalars_.bytes() + matrices_.bytes() + lists_.bytes() + shared_.bytes();
 }
 
 #define DELASSUS_INSTANTIATE(T) template class Factor<T>;

@@ -11,6 +11,7 @@
 //            ν = D⁻¹u − Σ_j (W_j D⁻¹)ᵀ a_j;   a_i = a_π + S_i ν.
 // Singular a pivot of D_i that is not positive: M (or M_R) is singular in this arithmetic; reported, never repaired.
 // Cost     update ≈ 160 N₁ + 144 |pairs| + 12 m operations; project ≈ 48 n + 24 |W| + 24 m (one-dof joints N₁).
+// Beside    a factor of M beside one of M_R has the same order (mass_plan): phase A is that of M_R, copied.
 // Workspace  6 per active body + 1 per active degree of freedom, times the columns.
 // Error    componentwise within the data's sensitivity as long as no pivot is lost (tested, not proven).
 // Source   paper, Algorithms 1–4 with the corrections of docs/paper_notes.md.
@@ -25,10 +26,16 @@ template <class T> class Factor {
  public:
   /// The plan decides the matrix: made with Matrix::M it takes no weights. Both arguments must outlive this.
   void analyze(const Structure& structure, const Plan& plan);
+  /// The factor of M beside one of M_R, which must outlive this too: `plan` is mass_plan of its plan. Rows, and numbers that
+  /// elimination leaves as they are, are kept there only.
+  void analyze_beside(const Factor& of_M_R, const Plan& plan);
   /// Numbers at a configuration, and phase A. Report: lost_pivot with the body's first degree of freedom.
   [[nodiscard]] Report start(const Problem<T>& problem);
+  /// The same after the start of the factor of M_R beside this, whose phase A it shares.
+  [[nodiscard]] Report start_beside();
   /// Takes K and 𝒦 of rows that moved at the same configuration. A factor of M is as good as before; one of M_R needs new weights.
   void move_rows(const Problem<T>& problem);
+  void move_rows_beside();
   /// The rest of the factor of M_R; what start computed is kept, so that new weights cost no more than they must.
   [[nodiscard]] Report update_weights(const BlockDiagonal<T>& weights);
   /// The rest of the factor of M, once after each start.
@@ -69,9 +76,9 @@ template <class T> class Factor {
     Index row, rows, first, constraint;
   };
 
-  int analyze_joint_rows();
+  void take_plan(const Structure& structure, const Plan& plan);
+  void make_joint_rows();
   void find_sources();
-  void load_rows(const Problem<T>& problem);
   void into_basis(int step);
   void add_weights(const BlockDiagonal<T>& weights);
   void add_joint_weights(const BlockDiagonal<T>& weights);
@@ -121,14 +128,16 @@ template <class T> class Factor {
   std::span<int> first_child_, next_child_;  // per step, those it takes inertia_ from (simple, of the same phase), −1 at the end
   std::span<int> first_joint_rows_; // per active step
   std::span<int> joint_weight_of_;  // per active step, −1: none
+  std::span<JointRows> joint_rows_; // ascending by step
 
-  LinkRows<T> links_;                  // the K_e^i
-  std::vector<JointRows> joint_rows_;  // ascending by step
+  const Factor* beside_ = nullptr;  // of M_R: has s0_, armature_, joint_k0_, vector_of_ and what is known of rows
+  const LinkRows<T>* rows_ = nullptr;  // the K_e^i: links_, or those beside
+  LinkRows<T> links_;
+  Report started_;                  // by start
   Slab<Six<T>> sixes_;
   Slab<T> scalars_;
   Slab<SixBySix<T>> matrices_;
-  Slab<int> lists_;
-  Slab<Filled> fills_;
+  Lists lists_, shared_;            // of this factor alone, and what one beside takes too
 };
 
 }  // namespace delassus

@@ -9,13 +9,12 @@ namespace delassus {
 template <class T> void KktResidual<T>::analyze(std::shared_ptr<const Structure> structure) {
   structure_ = std::move(structure);
   const Structure& s = *structure_;
-  body_of_.clear();
-  for (Index i = 0; i < s.bodies(); ++i) body_of_.insert(body_of_.end(), static_cast<std::size_t>(s.dofs(i)), i);
-  s_.assign(static_cast<std::size_t>(s.dofs()), Six<T>::zero());
-  k_.assign(static_cast<std::size_t>(s.K_rows), Six<T>::zero());
+  const std::size_t dofs = static_cast<std::size_t>(s.dofs());
+  body_of_.resize(dofs);
+  for (Index i = 0; i < s.bodies(); ++i) std::fill(body_of_.begin() + s.first_dof[i], body_of_.begin() + s.first_dof[i + 1], static_cast<int>(i));
+  sixes_.divide(Six<T>::zero(), {{&s_, dofs}, {&k_, static_cast<std::size_t>(s.K_rows)}});
   h_.assign(static_cast<std::size_t>(s.bodies()), SixBySix<T>::zero());
-  armature_.assign(s_.size(), T(0));
-  joint_k_.assign(static_cast<std::size_t>(s.joint_K_size), T(0));
+  scalars_.divide(T(0), {{&armature_, dofs}, {&joint_k_, static_cast<std::size_t>(s.joint_K_size)}});
   damping_.analyze(s);
 }
 
@@ -148,9 +147,7 @@ template <class T> Index KktResidual<T>::workspace() const {
 }
 
 template <class T> Index KktResidual<T>::bytes() const {
-  return static_cast<Index>((s_.size() + k_.size()) * sizeof(Six<T>) + h_.size() * sizeof(SixBySix<T>) +
-                            (armature_.size() + joint_k_.size()) * sizeof(T) +
-                            body_of_.size() * sizeof(Index)) + damping_.bytes();
+  return sixes_.bytes() + scalars_.bytes() + static_cast<Index>(h_.size() * sizeof(SixBySix<T>) + body_of_.size() * sizeof(int)) + damping_.bytes();
 }
 
 #define DELASSUS_INSTANTIATE(T)                                                                                     \

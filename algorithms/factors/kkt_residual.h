@@ -43,10 +43,12 @@ template <class T> class KktResidual {
   template <class V, class X> void inward(X* r1, Buffers<V>& b) const;
 
   std::shared_ptr<const Structure> structure_;
-  std::vector<Index> body_of_;  // per degree of freedom
-  std::vector<Six<T>> s_, k_;
+  std::vector<int> body_of_;  // per degree of freedom
+  std::span<Six<T>> s_, k_;
   std::vector<SixBySix<T>> h_;
-  std::vector<T> armature_, joint_k_;
+  std::span<T> armature_, joint_k_;
+  Slab<Six<T>> sixes_;
+  Slab<T> scalars_;
   BlockDiagonal<T> damping_;  // R⁻¹
 };
 

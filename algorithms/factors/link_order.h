@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "algorithms/factors/plan.h"
 
@@ -19,17 +18,20 @@ class LinkOrder {
   [[nodiscard]] int size() const { return static_cast<int>(order_.size()); }
   /// The k-th constraint.
   [[nodiscard]] int operator[](int k) const { return order_[k]; }
+  /// The k-th constraint is on the bodies of the one before it.
+  [[nodiscard]] bool as_before(int k) const { return as_before_[k] != 0; }
   /// Of a constraint, by steps.
   [[nodiscard]] std::span<const Link> links(int constraint) const {
     return {links_.data() + first_[constraint], static_cast<std::size_t>(first_[constraint + 1] - first_[constraint])};
   }
-  [[nodiscard]] bool same_bodies(int constraint, int other) const;
 
  private:
   void order(int steps);
 
-  std::vector<Link> links_;
-  std::vector<int> first_, order_;
+  Lists lists_;
+  std::span<Link> links_;
+  std::span<int> first_, order_, at_;
+  std::span<char> as_before_;
 };
 
 }  // namespace delassus

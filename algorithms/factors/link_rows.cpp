@@ -15,7 +15,7 @@ int place_of_pair(int a, int b, int n) {
   return a * (2 * n - a - 1) / 2 + b - a - 1;
 }
 
-// What analyze will append, counted first.
+// What analyze will append; of sources the most.
 struct Counts {
   std::size_t groups = 0, bodies = 0, pairs = 0, spans = 0, segments = 0, links = 0;
 };
@@ -23,7 +23,7 @@ Counts counted(const Structure& s, const LinkOrder& sorted) {
   Counts all;
   for (int k = 0; k < sorted.size(); ++k) {
     const std::size_t n = sorted.links(sorted[k]).size();
-    const bool same = k > 0 && sorted.same_bodies(sorted[k], sorted[k - 1]);
+    const bool same = sorted.as_before(k);
     const auto& e = s.link_constraints;
     const bool adjacent = same && e[sorted[k - 1]].row + e[sorted[k - 1]].rows == e[sorted[k]].row;
     if (!same) ++all.groups, all.bodies += n, all.pairs += n * (n - (n > 0)) / 2;
@@ -33,58 +33,65 @@ Counts counted(const Structure& s, const LinkOrder& sorted) {
   return all;
 }
 
+// A list that is being written.
+template <class E> struct Appended {
+  std::span<E>& list;
+  int count = 0;
+  void push_back(const E& e) { list[count++] = e; }
+  E& back() { return list[count - 1]; }
+  [[nodiscard]] int size() const { return count; }
+  void end() { list = list.first(static_cast<std::size_t>(count)); }
+};
+
 }  // namespace
 
 template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& plan) {
   const LinkOrder sorted(s, plan);
-  groups_.clear(), bodies_.clear(), pairs_.clear(), constraints_.clear(), segments_.clear(), spans_.clear(), sources_.clear();
   const Counts all = counted(s, sorted);
-  groups_.reserve(all.groups + 1);
-  bodies_.reserve(all.bodies);
-  pairs_.reserve(all.pairs);
-  spans_.reserve(all.spans);
-  segments_.reserve(all.segments);
-  constraints_.reserve(static_cast<std::size_t>(sorted.size()));
-  sources_.reserve(all.links);
-  const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
-  std::vector<char> seen(static_cast<std::size_t>(plan.active()), 0);
+  const bool coupled = plan.matrix == Matrix::M_R;
+  std::span<char> seen;
+  lists_.divide(Lists::Part{groups_, all.groups + 1}, Lists::Part{bodies_, all.bodies}, Lists::Part{pairs_, coupled ? all.pairs : 0},
+                Lists::Part{constraints_, static_cast<std::size_t>(sorted.size())}, Lists::Part{segments_, all.segments},
+                Lists::Part{spans_, all.spans}, Lists::Part{sources_, all.links}, Lists::Part{seen, static_cast<std::size_t>(plan.active())});
+  Appended groups{groups_}, spans{spans_}, sources{sources_}, segments{segments_}, constraints{constraints_}, bodies{bodies_}, pairs{pairs_};
   int first = 0, largest = 0;
   for (int begin = 0, end = 0; begin < sorted.size(); begin = end) {
     const auto links = sorted.links(sorted[begin]);
-    Group group{size(bodies_), size(pairs_), size(constraints_), 0, first};
-    const int n = size(links), first_span = size(spans_);
-    for (end = begin; end < sorted.size() && sorted.same_bodies(sorted[end], sorted[begin]); ++end) {
+    Group group{bodies.size(), pairs.size(), constraints.size(), 0, first};
+    const int n = static_cast<int>(links.size()), first_span = spans.size();
+    for (end = begin; end < sorted.size() && (end == begin || sorted.as_before(end)); ++end) {
       const auto& e = s.link_constraints[sorted[end]];
       const int row = static_cast<int>(e.row), rows = static_cast<int>(e.rows);
-      if (end > begin && spans_.back().row + spans_.back().rows == row) spans_.back().rows += rows;
-      else spans_.push_back({group.first_body, n, row, rows, first + group.rows, 0});
-      constraints_.push_back({sorted[end], row, rows});
+      if (end > begin && spans.back().row + spans.back().rows == row) spans.back().rows += rows;
+      else spans.push_back({group.first_body, n, row, rows, first + group.rows, 0});
+      constraints.push_back({sorted[end], row, rows});
       group.rows += rows;
     }
     for (int b = 0; b < n; ++b) {
       const int step = links[b].step - plan.first_active;
-      bodies_.push_back({step, std::exchange(seen[step], 1) != 0});
+      bodies.push_back({step, std::exchange(seen[step], 1) != 0});
       for (int k = begin; k < end; ++k) {
         const auto& e = s.link_constraints[sorted[k]];
         const int from = static_cast<int>(e.links[sorted.links(sorted[k])[b].place].first), rows = static_cast<int>(e.rows);
-        if (!sources_.empty() && sources_.back().from + sources_.back().rows == from) sources_.back().rows += rows;
-        else sources_.push_back({from, first, rows});
+        if (sources.size() > 0 && sources.back().from + sources.back().rows == from) sources.back().rows += rows;
+        else sources.push_back({from, first, rows});
         first += rows;
       }
     }
-    for (int span = first_span; span < size(spans_); ++span) spans_[span].stride = group.rows;
+    for (int span = first_span; span < spans.size(); ++span) spans_[span].stride = group.rows;
     for (int b = 0; b < n; ++b)
-      for (int span = first_span; span < size(spans_); ++span) segments_.push_back({bodies_[group.first_body + b].step, spans_[span].row, spans_[span].rows});
-    if (plan.matrix == Matrix::M_R)
+      for (int span = first_span; span < spans.size(); ++span) segments.push_back({bodies_[group.first_body + b].step, spans_[span].row, spans_[span].rows});
+    if (coupled)
       for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
-          pairs_.push_back(plan.constraint_pairs[plan.first_constraint_pair[sorted[begin]] + place_of_pair(links[a].place, links[b].place, n)]);
-    groups_.push_back(group);
+          pairs.push_back(plan.constraint_pairs[plan.first_constraint_pair[sorted[begin]] + place_of_pair(links[a].place, links[b].place, n)]);
+    groups.push_back(group);
     largest = std::max(largest, first - group.first);
   }
-  groups_.push_back({size(bodies_), size(pairs_), size(constraints_), 0, first});
-  k_.assign(static_cast<std::size_t>(first + 3), Six<T>::zero());  // gather reads four at a time
-  weighted_.assign(static_cast<std::size_t>(largest), Six<T>::zero());
+  groups.push_back({bodies.size(), pairs.size(), constraints.size(), 0, first});
+  sources.end();
+  // gather reads four at a time
+  sixes_.divide(Six<T>::zero(), {{&k_, static_cast<std::size_t>(first + 3)}, {&weighted_, static_cast<std::size_t>(coupled ? largest : 0)}});
 }
 
 template <class T> void LinkRows<T>::load(const Problem<T>& problem) {
@@ -172,12 +179,6 @@ template <class T> void LinkRows<T>::mobility(const SixBySix<T>* omega, T* d) co
         d[s.row + r] += T(s.bodies) * dot(k, multiply(omega[bodies_[s.first_body + b].step], k));
       }
     }
-}
-
-template <class T> Index LinkRows<T>::bytes() const {
-  return static_cast<Index>((k_.size() + weighted_.size()) * sizeof(Six<T>) + pairs_.size() * sizeof(int) + bodies_.size() * sizeof(Body) +
-                            groups_.size() * sizeof(Group) + constraints_.size() * sizeof(OfConstraint) +
-                            segments_.size() * sizeof(Segment) + spans_.size() * sizeof(Span) + sources_.size() * sizeof(Source));
 }
 
 #define DELASSUS_INSTANTIATE(T) template class LinkRows<T>; template void LinkRows<T>::scatter<T>(const T*, Six<T>*) const; \

@@ -11,6 +11,7 @@
 #include "algorithms/factors/block_diagonal.h"
 #include "algorithms/factors/plan.h"
 #include "algorithms/kit/six.h"
+#include "algorithms/kit/slab.h"
 
 namespace delassus {
 
@@ -28,7 +29,7 @@ template <class T> class LinkRows {
   /// d_r = k Σ_i k_rᵀ Ω_i k_r over the k bodies of row r.
   void mobility(const SixBySix<T>* omega, T* d) const;
 
-  [[nodiscard]] Index bytes() const;
+  [[nodiscard]] Index bytes() const { return lists_.bytes() + sixes_.bytes(); }
 
  private:
   struct Group {
@@ -54,15 +55,17 @@ template <class T> class LinkRows {
 
   void add_inertia(const Group& g, int b, const BlockDiagonal<T>& weights, const SixBySix<T>& from, SixBySix<T>& to);
 
-  std::vector<Group> groups_;  // and one past the end
-  std::vector<Body> bodies_;
-  std::vector<int> pairs_;     // blocks of (0,1) (0,2) … (1,2) …
-  std::vector<OfConstraint> constraints_;
-  std::vector<Segment> segments_;  // in the order of k_
-  std::vector<Span> spans_;
-  std::vector<Source> sources_;
-  std::vector<Six<T>> k_;
-  std::vector<Six<T>> weighted_;  // scratch: R K of one group
+  std::span<Group> groups_;  // and one past the end
+  std::span<Body> bodies_;
+  std::span<int> pairs_;     // blocks of (0,1) (0,2) … (1,2) …
+  std::span<OfConstraint> constraints_;
+  std::span<Segment> segments_;  // in the order of k_
+  std::span<Span> spans_;
+  std::span<Source> sources_;
+  std::span<Six<T>> k_;
+  std::span<Six<T>> weighted_;  // scratch: R K of one group
+  Lists lists_;
+  Slab<Six<T>> sixes_;
 };
 
 }  // namespace delassus

@@ -11,21 +11,31 @@ template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> 
   residual_.analyze(structure_);
   weights_.analyze(*structure_);
   mass_ = mass;
+  beside_ = false;
   if (mass_ == Mass::factored_elsewhere) return;
   plan_M_ = make_plan(*structure_, Matrix::M);
   factor_M_.analyze(*structure_, plan_M_);
 }
 
+template <class T> void Refinement<T>::analyze(std::shared_ptr<const Structure> structure, const Plan& plan, const Factor<T>& of_M_R) {
+  analyze(std::move(structure), Mass::factored_elsewhere);
+  mass_ = Mass::factored_here;
+  beside_ = true;
+  plan_M_ = mass_plan(*structure_, plan);
+  factor_M_.analyze_beside(of_M_R, plan_M_);
+}
+
 template <class T> void Refinement<T>::update(const Problem<T>& problem) {
   residual_.update(problem);
   if (mass_ == Mass::factored_elsewhere) return;
-  factored_M_ = factor_M_.start(problem);
+  factored_M_ = beside_ ? factor_M_.start_beside() : factor_M_.start(problem);
   M_is_current_ = false;
 }
 
 template <class T> void Refinement<T>::update_rows(const Problem<T>& problem) {
   residual_.update_rows(problem);
-  if (mass_ == Mass::factored_here) factor_M_.move_rows(problem);
+  if (beside_) factor_M_.move_rows_beside();
+  else if (mass_ == Mass::factored_here) factor_M_.move_rows(problem);
 }
 
 template <class T> Report Refinement<T>::factor_mass() const {

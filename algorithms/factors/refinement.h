@@ -55,6 +55,8 @@ template <class T> class Refinement {
   enum class Mass : std::uint8_t { factored_here, factored_elsewhere };
 
   void analyze(std::shared_ptr<const Structure> structure, Mass mass = Mass::factored_here);
+  /// M is factored here, beside a factor of M_R made with `plan`, which is started before each update and takes rows that move first.
+  void analyze(std::shared_ptr<const Structure> structure, const Plan& plan, const Factor<T>& of_M_R);
   void update(const Problem<T>& problem);
   /// Rows that moved; the factor of M is kept.
   void update_rows(const Problem<T>& problem);
@@ -195,6 +197,7 @@ template <class T> class Refinement {
   std::shared_ptr<const Structure> structure_;
   KktResidual<T> residual_;
   Mass mass_ = Mass::factored_here;
+  bool beside_ = false;  // a factor of M_R
   Plan plan_M_;
   mutable Factor<T> factor_M_;
   mutable Report factored_M_;

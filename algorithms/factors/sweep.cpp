@@ -12,7 +12,7 @@ template <class V> Six<V>* forces(V* work) { return reinterpret_cast<Six<V>*>(wo
 template <class T> template <class V> void Factor<T>::scatter(const V* x, Six<V>* f, V* u) const {
   for (int i = 0; i < plan_->active(); ++i) f[i] = Six<V>::zero();
   for (int c = 0; c < plan_->active_columns(); ++c) u[c] = V{};
-  links_.scatter(x, f);
+  rows_->scatter(x, f);
   for (const JointRows& j : joint_rows_)
     for (Index r = 0; r < j.rows; ++r)
       for (int c = 0; c < j.dofs; ++c) u[j.column + c] += x[j.row + r] * joint_k_[j.first + r * j.dofs + c];
@@ -94,7 +94,7 @@ template <class T> template <class V> void Factor<T>::forward(Plan::Runs runs, S
 
 // Alg. 3, lines 4–8: y_e = Σ K_e^i a_i, y_i = 𝒦ᵢ ν_i.
 template <class T> template <class V> void Factor<T>::gather(const Six<V>* f, const V* u, V* y) const {
-  links_.gather(f, y);
+  rows_->gather(f, y);
   for (const JointRows& j : joint_rows_)
     for (Index r = 0; r < j.rows; ++r) {
       V sum{};
@@ -217,7 +217,7 @@ template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const 
           for (int e = 0; e < n; ++e) of_row += k[c] * V(c, e) * k[e];
       }
   }
-  links_.mobility(omega + plan_->first_active, d);
+  rows_->mobility(omega + plan_->first_active, d);
 }
 
 // E V Eᵀ of every joint

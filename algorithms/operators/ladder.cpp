@@ -28,6 +28,8 @@ template <class T> void Ladder<T>::do_analyze() {
   of_hard_rows_.clear();
   dense_ = nullptr;
   hard_ = false;
+  of_soft_rows_.reserve(4);
+  of_hard_rows_.reserve(4);
   for (const char* name : {"lcaba_refined", "lcaba_qr", "proximal", "kkt_elimination"}) {
     const OperatorRow& row = find_operator(name);
     if (!std::get<Maker<T>>(row.makers) || (row.decides_rank && s.rows > max_dense_rows)) continue;

@@ -7,7 +7,7 @@ namespace delassus {
 template <class T> void LcabaRefined<T>::do_analyze() {
   plan_ = make_plan(*this->structure(), Matrix::M_R);
   factor_.analyze(*this->structure(), plan_);
-  refinement_.analyze(this->structure());
+  refinement_.analyze(this->structure(), plan_, factor_);
 }
 
 template <class T> Report LcabaRefined<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
