@@ -23,7 +23,7 @@ template <class T> Cell<T> of_row(const T& lambda, const T& u, const T& low, con
   else if (lambda < high && u < T(0)) r.natural = finite(high) ? T(0) : T(-u);
   r.cone = std::max(T(0), std::max(T(low - lambda), T(lambda - high)));
   const T beyond = u > T(0) ? T(lambda - low) : T(high - lambda);  // the way to the bound that this velocity asks for
-  if (finite(u > T(0) ? low : high)) r.complementarity = abs(u) * std::max(T(0), beyond);
+  if (finite(u > T(0) ? low : high)) r.complementarity = abs(u) * abs(beyond);
   else r.penetration = abs(u);
   return r;
 }

@@ -3,7 +3,7 @@
 //   natural          r_c = γ_c ‖λ_c − Π(λ_c − ũ_c/γ_c)‖                         [m/s]   the one that ends
 //   penetration      how far ũ is from K*: ‖(μ_i u_i)‖ − ũ_n, −u, |u|            [m/s]
 //   cone             how far λ is from K                                         [N s]
-//   complementarity  |λ·ũ|; box: u⁺ (λ − low) + u⁻ (high − λ)                    [J]
+//   complementarity  |λ·ũ|; box: |u| |λ − the bound that u asks for|              [J]
 // ũ = u + Γ e_n for exact Coulomb, u otherwise; γ_c: mean diagonal of G + R⁻¹ over the rows of the cone, by which an impulse
 // becomes the velocity that it gives its own contact. Each is the largest over the groups. reference/contact_residual.h says the same by
 // other lines.

@@ -5,7 +5,9 @@
 #include "simulation/solvers/admm.h"
 #include "simulation/solvers/direct.h"
 #include "simulation/solvers/newton_convex.h"
+#include "simulation/solvers/per_contact.h"
 #include "simulation/solvers/pgs.h"
+#include "simulation/solvers/projected_gradient.h"
 #include "simulation/solvers/proximal.h"
 
 namespace delassus::simulation {
@@ -35,6 +37,15 @@ const std::vector<SolverRow>& solvers() {
       {.name = "pgs", .summary = "projected Gauss–Seidel, cone after cone", .equations = "λ_c ← Π(λ_c − (u_c + Γ e_n)/γ_c)",
        .certificate = "natural residual", .source = "Moreau 1988; Jourdan, Alart, Jean 1998", .cost = "O(m²) a sweep",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = true, .make = make<Pgs>},
+      {.name = "per_contact", .summary = "Gauss–Seidel, every contact solved exactly by bisection", .equations = "u_n = 0, d × u_t = 0, λ_t = −μ λ_n d",
+       .certificate = "natural residual", .source = "Hwangbo, Lee, Hutter 2018", .cost = "O(m²) a sweep",
+       .half_lines = true, .boxes = true, .relaxed = false, .exact = true, .hard_rows = true, .given_matrix = true, .make = make<PerContact>},
+      {.name = "apgd", .summary = "accelerated projected gradients", .equations = "λ⁺ = Π(y − ∇f(y)/L), y = λ⁺ + β (λ⁺ − λ)",
+       .certificate = "natural residual", .source = "Mazhar, Heyn, Negrut, Tasora 2015", .cost = "O(n + m) an iteration",
+       .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = true, .given_matrix = true, .make = make<Apgd>},
+      {.name = "ccp", .summary = "projected gradients with a fixed step", .equations = "λ ← Π(λ − ω (Aλ + b)/γ)",
+       .certificate = "natural residual", .source = "Tasora, Anitescu 2011", .cost = "O(n + m) an iteration",
+       .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = true, .given_matrix = true, .make = make<Ccp>},
   };
   return table;
 }

@@ -1,11 +1,16 @@
 // Every solver on generated piles: what it calls solved is solved, and solvers agree on the motion.
 #include <gtest/gtest.h>
 
+#include "property_tests/allocations.h"
 #include "property_tests/contact_families.h"
 #include "reference/definition.h"
+#include "property_tests/laws.h"
 #include "simulation/solvers.h"
 
 namespace delassus {
+namespace laws {
+std::int64_t (*allocation_count)() = nullptr;  // set by count_allocations
+}
 namespace {
 
 using namespace simulation;
@@ -46,6 +51,44 @@ TEST(ContactPiles, ExactCoulombWithHardRows) {
         EXPECT_TRUE(report.ok() || report.status == Status::not_converged);
         EXPECT_EQ(report.ok(), report.residuals.natural <= 1e-9);
       }
+    }
+}
+
+// The second problem of a structure is solved without a single allocation.
+TEST(ContactPiles, NothingIsAllocatedAfterTheFirstSolve) {
+  laws::count_allocations();
+  if (laws::allocation_count == nullptr) GTEST_SKIP() << "skipped: allocations are not counted here";
+  for (const FrictionLaw law : {FrictionLaw::exact, FrictionLaw::relaxed})
+    for (const SolverRow& row : solvers()) {
+      const PileSpec spec{.bodies = 3, .contacts = 5, .damping = 1e-3, .law = law, .seed = 7};
+      auto p = pile(spec);
+      const auto solver = row.make();
+      if (!solver->supports(p)) continue;
+      solver->analyze(p);
+      VectorX<double> lambda;
+      static_cast<void>(solver->solve(p, {1e-9, 500}, lambda));
+      p.free_velocity *= 0.5;
+      const auto before = laws::allocation_count();
+      static_cast<void>(solver->solve(p, {1e-9, 500}, lambda));
+      EXPECT_EQ(laws::allocation_count() - before, 0) << row.name;
+    }
+}
+
+// Begun at the answer, a solver is there at once; begun nearby, it is not slower by much.
+TEST(ContactPiles, WarmStartIsUsed) {
+  for (const FrictionLaw law : {FrictionLaw::exact, FrictionLaw::relaxed})
+    for (const SolverRow& row : solvers()) {
+      auto p = pile({.bodies = 3, .contacts = 6, .damping = 1e-3, .law = law, .seed = 1});
+      const auto solver = row.make();
+      if (!solver->supports(p)) continue;
+      solver->analyze(p);
+      VectorX<double> lambda;
+      const auto cold = solver->solve(p, {1e-9, 5000}, lambda);
+      ASSERT_TRUE(cold.ok()) << row.name;
+      p.warm_start = lambda;
+      const auto warm = solver->solve(p, {1e-8, 5000}, lambda);
+      EXPECT_TRUE(warm.ok());
+      EXPECT_LE(warm.iterations, row.name == "newton_convex" ? 3 : 0) << row.name << " " << cold.iterations;
     }
 }
 

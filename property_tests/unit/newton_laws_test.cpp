@@ -1,0 +1,187 @@
+// Newton's method on the motion: not only that it arrives (with a wrong Hessian it does too), but by which steps.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "generators/random.h"
+#include "property_tests/contact_families.h"
+#include "reference/definition.h"
+#include "simulation/solvers/primal_newton.h"
+
+namespace delassus {
+namespace {
+
+using namespace simulation;
+
+struct Bench {
+  ContactProblem<double> p;
+  MatrixX<double> M, J;
+  VectorX<double> R_inverse, b;
+  explicit Bench(const PileSpec& spec) : p(pile(spec)) {
+    const auto d = reference::dense(*p.mechanism, Damping<double>::uniform(p.rows(), 0.0));
+    M = d.M;
+    J = d.J;
+    R_inverse = Eigen::Map<const VectorX<double>>(p.R_inverse.data(), p.rows());
+    b = p.free_velocity;
+  }
+};
+
+PileSpec spec(Index bodies, Index contacts, std::uint64_t seed, bool joints = false) {
+  return {.bodies = bodies, .contacts = contacts, .damping = 1e-3, .joints = joints, .law = FrictionLaw::relaxed, .seed = seed};
+}
+
+// λ(u), contact by contact, as the minimum of ½ λᵀR⁻¹λ + λᵀu over the cone: equal R⁻¹ within a contact, so the nearest point of −R u.
+VectorX<double> impulses(const Bench& s, const VectorX<double>& u) {
+  VectorX<double> lambda = -(u.array() / s.R_inverse.array()).matrix();
+  for (const ConeRows& c : s.p.groups) {
+    const double mu = s.p.friction[static_cast<std::size_t>(c.row + 1)], t = lambda.segment(c.row + 1, 2).norm(), n = lambda[c.row];
+    if (t <= mu * n) continue;
+    const double normal = std::max(0.0, (n + mu * t) / (1 + mu * mu));
+    lambda.segment(c.row + 1, 2) *= t > 0 ? mu * normal / t : 0;
+    lambda[c.row] = normal;
+  }
+  return lambda;
+}
+
+// H = −dλ/du by central differences; false where a difference crosses from one region of the cone to another.
+MatrixX<double> curvature(const Bench& s, const VectorX<double>& u) {
+  const Index m = u.size();
+  MatrixX<double> H(m, m);
+  for (Index c = 0; c < m; ++c) {
+    const double h = 1e-6 * u.lpNorm<Eigen::Infinity>();
+    VectorX<double> plus = u, minus = u;
+    plus[c] += h;
+    minus[c] -= h;
+    H.col(c) = -(impulses(s, plus) - impulses(s, minus)) / (2 * h);
+  }
+  return H;
+}
+
+// What a step owes: (M + JᵀHJ) d = Jᵀλ − M w, relative to its terms. `H` by differences.
+double step_error(const Bench& s, const MatrixX<double>& H, const VectorX<double>& lambda, const VectorX<double>& d) {
+  const VectorX<double> right = s.J.transpose() * lambda;  // w = 0
+  const VectorX<double> left = s.M * d + s.J.transpose() * (H * (s.J * d));
+  return (left - right).norm() / (right.norm() + left.norm());
+}
+
+TEST(NewtonLaws, StepSolvesTheHessianOfAnotherRoute) {
+  for (const bool joints : {false, true})
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      const Bench s(spec(4, 6, seed, joints));
+      PrimalNewton<double> newton;
+      newton.analyze(s.p);
+      ASSERT_TRUE(newton.start(s.p).ok());
+      VectorX<double> lambda(s.p.rows()), d(s.M.rows()), Jd(s.p.rows());
+      newton.evaluate(s.R_inverse, s.b, lambda);
+      EXPECT_LT((lambda - impulses(s, s.b)).norm(), 1e-12 * lambda.norm() + 1e-300);
+      ASSERT_TRUE(newton.direction(lambda, d, Jd).ok());
+      if (lambda.norm() == 0) continue;
+      EXPECT_LT(step_error(s, curvature(s, s.b), lambda, d), 1e-7) << "seed " << seed;  // of differences with a step of 1e-6
+      EXPECT_LT((s.J * d - Jd).norm(), 1e-10 * (1 + Jd.norm()));
+    }
+}
+
+// Wrong Hessians of peers: each must be seen by the law above.
+TEST(NewtonLaws, WrongHessiansAreNoticed) {
+  struct Defect {
+    const char* name;
+    void (*make)(MatrixX<double>& M, MatrixX<double>& J, MatrixX<double>& H);
+  };
+  const Defect defects[] = {
+      {"M missing in one triangle", [](auto& M, auto&, auto&) { M = MatrixX<double>(M.template triangularView<Eigen::Lower>()); }},
+      {"rows of another branch merged", [](auto&, auto& J, auto&) { J.col(1) += J.col(J.cols() - 1); }},
+      {"stale weights", [](auto&, auto&, auto& H) { H *= 0.5; }},
+      {"blocks without their sides", [](auto&, auto&, auto& H) { H = MatrixX<double>(H.diagonal().asDiagonal()); }},
+      {"one contact left out", [](auto&, auto&, auto& H) { H.topRows(3).setZero(); H.leftCols(3).setZero(); }},
+      {"a per cent of M", [](auto& M, auto&, auto&) { M *= 1.01; }},
+  };
+  for (const Defect& defect : defects) {
+    int noticed = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      const Bench s(spec(4, 6, seed, true));
+      const VectorX<double> lambda = impulses(s, s.b);
+      if (lambda.norm() == 0) continue;
+      const MatrixX<double> H = curvature(s, s.b);
+      MatrixX<double> M = s.M, J = s.J, wrong = H;
+      defect.make(M, J, wrong);
+      const VectorX<double> d = (M + J.transpose() * wrong * J).fullPivLu().solve(s.J.transpose() * lambda);
+      noticed += step_error(s, H, lambda, d) >= 1e-7;
+    }
+    EXPECT_GT(noticed, 0) << defect.name;
+    std::printf("  %-32s noticed in %d of 8\n", defect.name, noticed);
+  }
+}
+
+// Half lines alone are quadratic near a solution that is strictly complementary: one step, to the last digits.
+TEST(NewtonLaws, OneStepFromTheActiveSet) {
+  int judged = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Bench s(spec(3, 4, seed, seed % 2 == 0));
+    for (ConeRows& c : s.p.groups) c.cone = Cone::half_line;
+    std::fill(s.p.friction.begin(), s.p.friction.end(), 0);
+    PrimalNewton<double> newton;
+    newton.analyze(s.p);
+    ASSERT_TRUE(newton.start(s.p).ok());
+    VectorX<double> lambda(s.p.rows()), again(s.p.rows());
+    ASSERT_TRUE(newton.minimise(s.R_inverse, s.b, 0, 100, lambda).report.ok());
+    const VectorX<double> u = s.J * newton.motion() + s.b, solution = newton.motion();
+    bool strict = lambda.norm() > 0;
+    for (Index r = 0; r < u.size(); ++r) strict = strict && (lambda[r] * s.R_inverse[r] > 1e-4 || u[r] > 1e-4);
+    if (!strict) continue;
+    ++judged;
+    ASSERT_TRUE(newton.begin_at(lambda * (1 + 1e-6)).ok());  // a motion that keeps the active set
+    ASSERT_TRUE(newton.minimise(s.R_inverse, s.b, 0, 1, again).report.ok());
+    EXPECT_LT((newton.motion() - solution).norm(), 1e-11 * (1 + solution.norm())) << "seed " << seed;
+  }
+  EXPECT_GT(judged, 3);
+}
+
+// The same method with a dense Hessian and a search by bisection needs as many iterations.
+TEST(NewtonLaws, AsManyIterationsAsWithADenseHessian) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Bench s(spec(4, 8, seed, seed % 2 == 0));
+    PrimalNewton<double> newton;
+    newton.analyze(s.p);
+    ASSERT_TRUE(newton.start(s.p).ok());
+    VectorX<double> lambda(s.p.rows());
+    const auto out = newton.minimise(s.R_inverse, s.b, 1e-6, 100, lambda);
+    VectorX<double> w = VectorX<double>::Zero(s.M.rows());
+    int dense = 0;
+    for (; dense < 100; ++dense) {
+      const VectorX<double> u = s.J * w + s.b, l = impulses(s, u);
+      PrimalNewton<double> blocks;  // H of the same cones; its factor is not used
+      blocks.analyze(s.p);
+      ASSERT_TRUE(blocks.start(s.p).ok());
+      VectorX<double> ignored(s.p.rows());
+      blocks.evaluate(s.R_inverse, u, ignored);
+      MatrixX<double> H = MatrixX<double>::Zero(u.size(), u.size());
+      for (const auto& block : blocks.hessian().blocks) H.block(block.row, block.row, 3, 3) = block.R_inverse;
+      const VectorX<double> d = (s.M + s.J.transpose() * H * s.J).llt().solve(s.J.transpose() * l - s.M * w), Jd = s.J * d;
+      const auto slope = [&](double alpha) { return d.dot(s.M * (w + alpha * d)) - Jd.dot(impulses(s, u + alpha * Jd)); };
+      double low = 0, high = 1;
+      while (slope(high) < 0) high *= 2;
+      for (int k = 0; k < 80; ++k) (slope((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+      w += high * d;
+      if ((high * Jd).lpNorm<Eigen::Infinity>() <= 1e-6) break;
+    }
+    EXPECT_NEAR(out.iterations, dense + 1, 1) << "seed " << seed;
+    EXPECT_LT((newton.motion() - w).norm(), 1e-6 * (1 + w.norm()));
+  }
+}
+
+// One scene, masses over six decades: the iterations stay few.
+TEST(NewtonLaws, MassRatiosDoNotStallIt) {
+  for (const int decades : {0, 3, 6}) {
+    PileSpec of = spec(8, 12, 3);
+    of.mass_decades = decades;
+    const Bench s(of);
+    PrimalNewton<double> newton;
+    newton.analyze(s.p);
+    ASSERT_TRUE(newton.start(s.p).ok());
+    VectorX<double> lambda(s.p.rows());
+    EXPECT_LT(newton.minimise(s.R_inverse, s.b, 0, 100, lambda).iterations, 40) << decades << " decades";
+  }
+}
+
+}  // namespace
+}  // namespace delassus
