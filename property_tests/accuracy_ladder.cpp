@@ -67,7 +67,7 @@ int run(const Options& o) {
   Campaign campaign;
   for (const OperatorRow& row : operators()) {
     if (row.name == default_rung) campaign.judged = campaign.rungs.size();
-    if (row.solves) campaign.rungs.push_back(row.name == default_rung ? &judged : &row);
+    if (row.solves && !row.maximal) campaign.rungs.push_back(row.name == default_rung ? &judged : &row);
   }
   int failures = 0;
   for (std::size_t m = 0; m < mechanisms().size(); ++m) {

@@ -165,11 +165,11 @@ bool check_problem(const Options& o, std::uint64_t seed, std::map<std::string, T
   if (a.isZero(0)) return false;
   const VectorX<Quad> lambda = truth.solve(a);
   const Question q{c.problem, c.damping, truth, a, lambda, truth.rounding(lambda), seed};
-  for (const OperatorRow& row : operators())
-    if (row.solves) check_operator(o, row, q, tallies[(damped(c) ? "" : "hard rows, ") + std::string(row.name)]);
+  for (const OperatorRow& row : operators())  // one that iterates in maximal coordinates takes a thousand times as long
+    if (row.solves && !(row.maximal && seed % 50 != 0)) check_operator(o, row, q, tallies[(damped(c) ? "" : "hard rows, ") + std::string(row.name)]);
   if (!damped(c))
     for (const OperatorRow& row : operators())
-      if (row.solves) check_operator(o, row, q, tallies["hard rows, no step, " + std::string(row.name)], 0);
+      if (row.solves && !(row.maximal && seed % 50 != 0)) check_operator(o, row, q, tallies["hard rows, no step, " + std::string(row.name)], 0);
   if (!damped(c)) return true;
   constexpr double uncapped = 1e300;
   check_refinement<double>(o, q, uncapped, 0, tallies["steps of lcaba"]);

@@ -50,9 +50,14 @@ std::string cell_text(const Answered& cell, bool compared) {
   return text;
 }
 
-/// Dense operators are left out where their matrix is too large to be of use.
+/// Of those that have no bound and hold a matrix of the rows the page shows dense_cholesky alone.
+bool shown(const OperatorRow& row) { return row.solve_error == ErrorClass::refined || row.holds != Holds::rows_squared; }
+
+/// Dense operators are left out where their matrix is too large to be of use, iterations in maximal coordinates where they are of none.
 bool too_large(const OperatorRow& row, const Structure& s) {
-  return (row.holds != Holds::sparse && s.rows > 1000) || (row.holds == Holds::all_squared && s.dofs() > 1000);
+  if (!shown(row) && (s.rows > 300 || s.dofs() > 1000)) return true;
+  if (row.holds != Holds::sparse && s.rows > 1000) return true;
+  return (row.holds == Holds::all_squared && s.dofs() > 1000) || (row.maximal && s.bodies() > 200);
 }
 
 /// A row of text per operator: one cell per size.
@@ -104,6 +109,7 @@ void print(const Options& o, const HardCase& h, const Table& table) {
   for (std::size_t k = 0; o.markdown && k < table.begin()->second.size(); ++k) std::cout << "---|";
   std::cout << (o.markdown ? "\n" : "");
   for (const auto& [k, cells] : table) {
+    if (o.markdown && !shown(operators()[k])) continue;
     std::cout << (o.markdown ? "| `" : "  ") << operators()[k].name << (o.markdown ? "` |" : "");
     for (const std::string& cell : cells) std::cout << (o.markdown ? " " : "; ") << cell << (o.markdown ? " |" : "");
     std::cout << '\n';

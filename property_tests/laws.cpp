@@ -11,6 +11,7 @@
 #include "property_tests/laws_conduct.h"
 #include "property_tests/laws_groups.h"
 #include "property_tests/laws_routes.h"
+#include "property_tests/maximal_condition.h"
 #include "property_tests/route.h"
 
 namespace delassus::laws {
@@ -38,6 +39,7 @@ bool any_variant(const Case& c, const std::function<bool(const Case&)>& is) {
 ///   an iteration      where κ(A) is beyond 1/√eps, or products A f are 30 m times less accurate than by the explicit matrix
 ///   a factorisation   where κ(A), that factor, or R (J M⁻¹Jᵀ) where it needs R, is beyond 2⁻¹³/eps, or where M may be
 ///                     singular within 30 eps; refinement on it too. Where it decides ranks, it may find A singular there
+///   maximal coordinates   where H of a body is singular, or κ of that system is beyond 1/√eps
 const char* excuse(const LawRow& law, const Broken& broken, const OperatorRow& op, const Case& c) {
   if (law.name.starts_with("exact ")) return nullptr;
   const double eps = law.name.ends_with("in float") ? std::max<double>(op.factor_eps, unit_roundoff<float>) : op.factor_eps;
@@ -53,6 +55,8 @@ const char* excuse(const LawRow& law, const Broken& broken, const OperatorRow& o
                static_cast<double>(condition_of_M(v)) > 1 / (pass_below * eps);
       }))
     return "gives up, and says so, where κ(A) or R (J M⁻¹Jᵀ) > 2⁻¹³/eps, or κ(M) > 1/(30 eps)";
+  if (op.maximal && (iteration || factor) && any_variant(c, [&](const Case& v) { return maximal_condition(v.problem, v.damping) > std::sqrt(0.5 / eps); }))
+    return "gives up, and says so, where H of a body is singular, or κ of the system in maximal coordinates > 1/√eps";
   return nullptr;
 }
 

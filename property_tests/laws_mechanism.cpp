@@ -52,6 +52,7 @@ template <class T, Function F> Verdict same_rerooted(const OperatorRow& op, cons
 }
 
 template <class T, Function F> const char* why_not_split(const OperatorRow& op, const Case& c) {
+  if (op.maximal) return "refuses bodies without mass, which this makes";
   if (!can_split(*c.problem.structure)) return "has no joint of several freedoms without joint rows";
   return why_not<T>(F, op, c);
 }

@@ -165,7 +165,8 @@ std::string little_answered(const OperatorRow& row) {
   s.add_body(ground, 1);
   s.add_link_constraint(1, {0});
   Problem<double> p(std::make_shared<const Structure>(std::move(s)));
-  p.S[0][0] = p.K[0][0] = p.H[0](0, 0) = 1;
+  p.S[0][0] = p.K[0][0] = 1;
+  p.H[0].setIdentity();
   const auto op = row.make<double>();
   op->analyze(p.structure);
   Workspace<double> w(op->workspace(1));

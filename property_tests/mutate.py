@@ -40,6 +40,9 @@ FILES = {
     "ldlt.h": "dense_cholesky lcaba", "explicit.cpp": "dense_cholesky explicit_columns", **dict.fromkeys(["ltl.cpp", "branch_factor.cpp", "branch_rows.cpp", "branch_rows.h"], "ltl_osim ltl_kkt"), "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
+    "pair_sums.h": "pv_osim pv_osimr kjr", "thin_product.h": "ltl_osim pv_osimr", "mobility.h": "pv_osimr kjr efp efpa", "pv_osim.h": "pv_osim pv_osimr",
+    **dict.fromkeys(["row_plan.cpp", "row_plan.h", "row_propagation.cpp"], "pv_osim pv_osimr caba_osim caba_osimr"), "caba_osim.cpp": "caba_osim caba_osimr",
+    **dict.fromkeys(["mobility_form.cpp", "mobility_form.h"], "kjr efp efpa"),
     "operator.cpp": "dense_cholesky aba_sweep lcaba_refined", "damping.cpp": "lcaba aba_sweep",
     **dict.fromkeys(["weight_root.cpp", "weight_root.h", "mass_root.cpp", "front_plan.cpp", "householder.h", "square_root_factor.cpp",
                      "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr")}

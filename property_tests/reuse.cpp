@@ -197,7 +197,7 @@ std::string trace_of_use(const OperatorRow& row, const Case& before, const Case&
 }
 
 std::string lost_pivot_forgotten(const OperatorRow& row, bool held) {
-  if (held && row.name == "lcaba") return {};  // M + JᵀRJ is regular
+  if (held && row.solve_error == ErrorClass::amplified) return {};  // M + JᵀRJ is regular
   generators::Spec spec = generators::find_family("chain").make(3, 1);
   spec.links.resize(1);
   spec.links[0].bodies = {held ? 2 : 0};

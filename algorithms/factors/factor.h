@@ -63,6 +63,25 @@ template <class T> class Factor {
   /// d_j = (M⁻¹)_jj of every degree of freedom, in the problem's order, likewise. Shape n.
   void joint_mobility(T* d, SixBySix<T>* omega) const;
 
+  /// Step i as the sweeps see it, in the basis in which D_i is diagonal: S_i and 1/D, a column each, and W_j D⁻¹ of the members of
+  /// Q_i, `dofs` columns each.
+  struct Joint {
+    int dofs;
+    const Six<T>*s, *w;
+    const T* d_inverse;
+  };
+  [[nodiscard]] Joint joint(int i) const {
+    const int first = plan_->first_column[i];
+    return {plan_->first_column[i + 1] - first, s_.data() + first, w_.data() + plan_->first_w[i], d_inverse_.data() + first};
+  }
+  /// use(row, 𝒦 of the row in that basis) of the rows on the joint of active step i, in the order of the joint constraints.
+  template <class Use> void for_joint_rows(int i, Use&& use) const {
+    const int step = i - plan_->first_active;
+    for (int j = first_joint_rows_[step]; j < first_joint_rows_[step + 1]; ++j)
+      for (Index r = 0; r < joint_rows_[j].rows; ++r)
+        use(static_cast<int>(joint_rows_[j].row + r), joint_k_.data() + joint_rows_[j].first + r * joint_rows_[j].dofs);
+  }
+
   [[nodiscard]] Index workspace() const;  ///< values of V
   [[nodiscard]] Index solve_workspace() const;
   [[nodiscard]] Index bytes() const;

@@ -12,8 +12,9 @@
 
 namespace delassus {
 
-/// C: x_rows × y_rows, columns `stride` apart; X: x_rows × depth; Y: y_rows × depth.
-template <class T> void add_thin_product(T* C, Index stride, const T* X, Index x_rows, const T* Y, Index y_rows, Index depth) {
+/// C: x_rows × y_rows, columns `stride` apart; X: x_rows × depth, columns `x_stride` apart; Y: y_rows × depth.
+template <class T>
+void add_thin_product(T* C, Index stride, const T* X, Index x_stride, Index x_rows, const T* Y, Index y_rows, Index depth) {
   if constexpr (std::is_same_v<T, double>) {
     for (Index first = 0; first < x_rows; first += 8)
       for (Index c = 0; c < y_rows; c += 4) {
@@ -21,7 +22,7 @@ template <class T> void add_thin_product(T* C, Index stride, const T* X, Index x
         Lanes8 sum[4] = {};
         const auto add = [&](auto width) {
           for (Index k = 0; k < depth; ++k) {
-            const Lanes8 x = load_lanes(X + k * x_rows + first);
+            const Lanes8 x = load_lanes(X + k * x_stride + first);
             for (Index l = 0; l < width; ++l) sum[l] += x * Y[k * y_rows + c + l];
           }
         };
@@ -36,10 +37,15 @@ template <class T> void add_thin_product(T* C, Index stride, const T* X, Index x
     for (Index c = 0; c < y_rows; ++c)
       for (Index r = 0; r < x_rows; ++r) {
         T sum(0);
-        for (Index k = 0; k < depth; ++k) sum += X[k * x_rows + r] * Y[k * y_rows + c];
+        for (Index k = 0; k < depth; ++k) sum += X[k * x_stride + r] * Y[k * y_rows + c];
         C[c * stride + r] += sum;
       }
   }
+}
+
+/// The columns of X side by side.
+template <class T> void add_thin_product(T* C, Index stride, const T* X, Index x_rows, const T* Y, Index y_rows, Index depth) {
+  add_thin_product(C, stride, X, x_rows, x_rows, Y, y_rows, depth);
 }
 
 }  // namespace delassus

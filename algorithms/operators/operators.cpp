@@ -5,9 +5,13 @@
 #include "algorithms/errors/message.h"
 #include "algorithms/kit/instantiate.h"
 #include "algorithms/operators/aba_sweep.h"
+#include "algorithms/operators/caba_osim.h"
 #include "algorithms/operators/cg.h"
 #include "algorithms/operators/dense_cholesky.h"
 #include "algorithms/operators/explicit_columns.h"
+#include "algorithms/operators/efp.h"
+#include "algorithms/operators/efpa.h"
+#include "algorithms/operators/kjr.h"
 #include "algorithms/operators/kkt_elimination.h"
 #include "algorithms/operators/ladder.h"
 #include "algorithms/operators/lcaba.h"
@@ -15,7 +19,10 @@
 #include "algorithms/operators/lcaba_refined.h"
 #include "algorithms/operators/ltl_kkt.h"
 #include "algorithms/operators/ltl_osim.h"
+#include "algorithms/operators/maximal_direct.h"
+#include "algorithms/operators/maximal_free.h"
 #include "algorithms/operators/proximal.h"
+#include "algorithms/operators/pv_osim.h"
 
 namespace delassus {
 namespace {
@@ -40,6 +47,14 @@ template <template <class> class Op> constexpr Makers makers() {
   return all;
 }
 #undef DELASSUS_MAKER
+/// Of an operator for double alone: where operations are counted, too.
+template <template <class> class Op> constexpr Maker<Counted> counted() {
+#ifdef DELASSUS_EXACT
+  return make<Op, Counted>;
+#else
+  return nullptr;
+#endif
+}
 
 }  // namespace
 
@@ -75,6 +90,36 @@ const std::vector<OperatorRow>& operators() {
        .cost = "O(n d² + m d² + m² d + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
        .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
        .makers = makers<LtlKkt>()},
+      {.name = "pv_osim", .summary = "explicit matrix, every row carried inwards joint by joint",
+       .formula = "A = Σ_i G_i D_i⁻¹ G_iᵀ + R⁻¹, κ_π += κ_i − G_i D_i⁻¹ U_iᵀ", .source = "Sathya et al. 2024; loops: algorithms/factors/row_propagation.h",
+       .cost = "O(n + m² d + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<PvOsim>()},
+      {.name = "pv_osimr", .summary = "the same on the tree contracted to branchings and loaded bodies",
+       .formula = "A_rs = κ_r Ω_l κ_sᵀ where r and s meet", .source = "Sathya, Decré, Swevers 2024; loops: algorithms/factors/row_propagation.h",
+       .cost = "O(n + m² + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<PvOsimR>()},
+      {.name = "kjr", .summary = "explicit matrix, the mobility of every pair of bodies by itself",
+       .formula = "A_rs = Σ K_r Ω_ij K_sᵀ, Ω_ij = P_{i→l}ᵀ Ω_l P_{j→l}", .source = "Kreutz-Delgado, Jain and Rodriguez 1992; loops: algorithms/operators/mobility_form.h",
+       .cost = "O(n + m² d + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<Kjr>()},
+      {.name = "efp", .summary = "explicit matrix, one force after the other through the tree",
+       .formula = "the same, a_b = Ω_b κ_b on the path, Pᵀ a_π beside it", .source = "Chang and Khatib 2001; loops: algorithms/operators/mobility_form.h",
+       .cost = "O(n m + m² + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<Efp>()},
+      {.name = "efpa", .summary = "explicit matrix, propagators across spans shared by all rows of a body",
+       .formula = "the same, P_{j→l} once per body and ancestor", .source = "Wensing, Featherstone and Orin 2012; loops: algorithms/operators/mobility_form.h",
+       .cost = "O(n + m d + m² + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<Efpa>()},
+      {.name = "maximal_direct", .summary = "explicit matrix by a sparse direct factor in maximal coordinates",
+       .formula = "H a + Gᵀφ = Kᵀ, G a = S ν, Sᵀφ = A ν − 𝒦ᵀ; L D Lᵀ in tree order", .source = "Baraff 1996; algorithms/operators/maximal_direct.h",
+       .cost = "O(n m + m² + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::normwise, .holds = Holds::rows_squared,
+       .makers = makers<MaximalDirect>()},
       {.name = "aba_sweep", .summary = "Delassus operator by two articulated-body sweeps",
        .formula = "a = J M⁻¹ Jᵀ f + R⁻¹ f", .source = "paper, Algorithms 1–3 merged (section IV-D)",
        .cost = "O(n + m)", .applies = true, .solves = false, .zero_damping = false, .terminates_exactly = true,
@@ -85,6 +130,14 @@ const std::vector<OperatorRow>& operators() {
        .cost = "O(n + m) with local loops, O(n + m² d + m³) at worst", .applies = false, .solves = true,
        .zero_damping = false, .terminates_exactly = true, .apply_error = ErrorClass::componentwise,
        .solve_error = ErrorClass::amplified, .makers = makers<Lcaba>()},
+      {.name = "caba_osim", .summary = "explicit damped inverse, every row carried through lcaba's factor",
+       .formula = "Λ_R = R − R (Σ_i G_i D_i⁻¹ G_iᵀ) R, factor of M + Jᵀ R J", .source = "Sathya and Carpentier 2025; loops: algorithms/factors/row_propagation.h",
+       .cost = "O(n + m² d) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsim>()},
+      {.name = "caba_osimr", .summary = "the same on the tree contracted to branchings, loaded bodies and coupled joints",
+       .formula = "Λ_R = R − R (Σ_i G_i D_i⁻¹ G_iᵀ) R, factor of M + Jᵀ R J", .source = "Sathya and Carpentier 2025; loops: algorithms/factors/row_propagation.h",
+       .cost = "O(n + m²) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsimR>()},
       {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate",
        .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: algorithms/operators/lcaba_refined.h",
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
@@ -112,6 +165,11 @@ const std::vector<OperatorRow>& operators() {
        .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined,
        .factor_eps = 0x1p-32,
        .makers = makers_with_roots<Proximal>()},
+      {.name = "maximal_free", .summary = "matrix-free iterations on bodies and joints in maximal coordinates; refuses massless bodies",
+       .formula = "(B H⁻¹Bᵀ + C) (φ; λ) = b, B all joints and rows, refined", .source = "Tasora and Anitescu 2011; algorithms/operators/maximal_free.h",
+       .cost = "O((n + m) √κ(N)) per step", .applies = false, .solves = true, .zero_damping = true, .terminates_exactly = false,
+       .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::refined, .maximal = true,
+       .makers = {make<MaximalFree, double>, nullptr, nullptr, counted<MaximalFree>(), nullptr, nullptr}},
       {.name = "kkt_elimination", .summary = "multipliers kept to the end; finds the rank and names dependent rows",
        .formula = "A λ = r₂ − J M⁻¹ r₁, ν = M⁻¹(r₁ + Jᵀλ), refined", .source = "algorithms/operators/kkt_elimination.h",
        .cost = "O((n + m) m + m³)", .applies = true, .solves = true, .zero_damping = true, .terminates_exactly = true,

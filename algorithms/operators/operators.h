@@ -37,6 +37,8 @@ struct OperatorRow {
   bool terminates_exactly;    ///< exact in exact arithmetic
   bool decides_rank = false;  ///< solves a singular A too when a is in its range, and names the dependent rows
   ErrorClass apply_error, solve_error;
+  bool maximal = false;       ///< iterates on all six motions of every body: refuses a body whose H is singular (lost_pivot), and may
+                              ///< give up where κ of that system is beyond 1/√eps, whatever κ(A) is
   bool grows = false;         ///< allocates when it first needs a part of itself; never again
   double factor_eps = 0x1p-53;  ///< unit roundoff of the arithmetic its factor runs in: where 1/κ(A) is not far above it,
                                 ///< the operator may give up, and says so

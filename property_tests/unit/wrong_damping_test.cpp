@@ -19,7 +19,8 @@ template <class T> Report updated(const OperatorRow& row, Damping<double> d) {
   s.add_link_constraint(2, {0});
   s.add_link_constraint(1, {0});
   Problem<double> p(std::make_shared<const Structure>(s));
-  for (Index k = 0; k < 3; ++k) p.S[static_cast<std::size_t>(k)][k] = p.K[static_cast<std::size_t>(k)][k] = p.H[0](k, k) = 1;
+  p.H[0].setIdentity();
+  for (Index k = 0; k < 3; ++k) p.S[static_cast<std::size_t>(k)][k] = p.K[static_cast<std::size_t>(k)][k] = 1;
   const auto op = row.make<T>();
   op->analyze(p.structure);
   return op->update(p.cast<T>(), d.cast<T>());

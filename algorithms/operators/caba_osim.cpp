@@ -1,0 +1,91 @@
+#include "algorithms/operators/caba_osim.h"
+
+#include "algorithms/kit/columns.h"
+#include "algorithms/kit/instantiate.h"
+
+namespace delassus {
+
+template <class T, Tree tree> void CabaOsimWith<T, tree>::do_analyze() {
+  const Index m = this->size();
+  plan_ = make_plan(*this->structure(), Matrix::M_R);
+  factor_.analyze(*this->structure(), plan_);
+  rows_.analyze(*this->structure(), plan_, tree);
+  weights_.analyze(*this->structure());
+  V_.setZero(m, m);
+  F_.setZero(m, m);
+  unit_.assign(static_cast<std::size_t>(m), T(0));
+}
+
+template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
+  undamped_ = factor_.start(problem);
+  rows_.load(problem);
+  return do_update_damping(damping);
+}
+
+template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
+  factor_.move_rows(problem);
+  rows_.load(problem);
+  return do_update_damping(damping);
+}
+
+template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_update_damping(const Damping<T>& damping) {
+  factored_ = undamped_;
+  if (factored_.ok()) factored_ = weights_.assign_inverse(damping);
+  if (factored_.ok()) factored_ = factor_.update_weights(weights_);
+  if (factored_.ok()) invert();
+  return factored_;
+}
+
+// V = R − R F R
+template <class T, Tree tree> void CabaOsimWith<T, tree>::invert() {
+  const Index m = this->size();
+  F_.setZero();
+  rows_.form(factor_, F_);
+  for (Index c = 0; c < m; ++c)
+    for (Index r = c + 1; r < m; ++r) F_(c, r) = F_(r, c);
+  for (Index c = 0; c < m; ++c) weights_.multiply(F_.data() + c * m, V_.data() + c * m);  // R F
+  for (Index c = 0; c < m; ++c)
+    for (Index r = 0; r < m; ++r) F_(r, c) = V_(c, r);  // F R
+  for (Index c = 0; c < m; ++c) {
+    T *const v = V_.data() + c * m, *const of_R = F_.data() + c * m;
+    weights_.multiply(of_R, v);
+    unit_[c] = T(1);
+    weights_.multiply(unit_.data(), of_R);
+    unit_[c] = T(0);
+    for (Index r = 0; r < m; ++r) v[r] = of_R[r] - v[r];
+  }
+  for (Index c = 0; c < m; ++c)
+    for (Index r = c + 1; r < m; ++r) V_(c, r) = V_(r, c);
+}
+
+template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_solve(ConstRef<T> a, Ref<T> f, T*) const {
+  if (!factored_.ok()) return factored_;
+  for (Index c = 0; c < a.cols(); ++c) {
+    f.col(c).setZero();
+    for (Index k = 0; k < a.rows(); ++k) f.col(c) += V_.col(k) * a(k, c);
+  }
+  return {};
+}
+
+// M_R ν = r₁ + JᵀR r₂;  λ = R (r₂ − J ν)
+template <class T, Tree tree>
+Report CabaOsimWith<T, tree>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy, Start, T* workspace) const {
+  if (!factored_.ok()) return factored_;
+  T* const rate = workspace + padded(factor_.solve_workspace());
+  weights_.multiply(r2, lambda);
+  factor_.solve(lambda, r1, rate, nu, workspace);
+  for (Index r = 0; r < this->size(); ++r) rate[r] = r2[r] - rate[r];
+  weights_.multiply(rate, lambda);
+  return {};
+}
+
+template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_kkt_workspace() const { return padded(factor_.solve_workspace()) + padded(this->size()); }
+
+template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_bytes() const {
+  return plan_.bytes() + factor_.bytes() + rows_.bytes() + weights_.bytes() + static_cast<Index>(sizeof(T)) * (2 * V_.size() + static_cast<Index>(unit_.size()));
+}
+
+#define DELASSUS_INSTANTIATE(T) template class CabaOsimWith<T, Tree::whole>; template class CabaOsimWith<T, Tree::contracted>;
+DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
+
+}  // namespace delassus
