@@ -52,7 +52,7 @@ template <class T> class BlockDiagonal {
           y[rows_[e].first + r] = sum;
         }
   }
-  [[nodiscard]] Index bytes() const { return lists_.bytes() + scalars_.bytes() + static_cast<Index>(off_.capacity() * sizeof(Index)); }
+  [[nodiscard]] Index bytes() const { return lists_.bytes() + scalars_.bytes() + static_cast<Index>(constraint_of_.size() * sizeof(Index)); }
 
  private:
   template <class U> friend class BlockDiagonal;
