@@ -42,7 +42,7 @@ template <class Results> void print(const Results& r, bool as_json, std::string 
 
 int run_table1(const Table1Options& o) {
   if (!o.from.empty()) {
-    print(read_results<bench::TableOne>(o.from, "what `delassus bench --table1 --json` prints"), o.as_json, bench::table_text);
+    print(read_results<bench::TableOne>(o.from, "what `delassus bench --table1 --json` prints; write it with > FILE"), o.as_json, bench::table_text);
     return good;
   }
   keep_on_interrupt();
@@ -55,7 +55,7 @@ int run_swimmers(const SwimmersOptions& o) {
   bench::Figure2 f;
   if (!o.pictures.empty()) bench::check_writable(o.pictures);
   if (!o.from.empty()) {
-    f = read_results<bench::Figure2>(o.from, "what `delassus bench --swimmers --json` prints");
+    f = read_results<bench::Figure2>(o.from, "what `delassus bench --swimmers --json` prints; write it with > FILE");
   } else {
     keep_on_interrupt();
     f = bench::measure_swimmers(o.largest, o.budget, o.longest, 1e9 * o.gigabytes, say, interrupted);
@@ -68,8 +68,8 @@ int run_swimmers(const SwimmersOptions& o) {
 }
 
 int run_compare(const std::vector<std::string>& files, double slack, bool as_json) {
-  const std::string accepted = "what `delassus bench --json` or `delassus bench --table1 --json` prints, or a report's results.json";
-  if (files.size() != 2) throw ModelError("", "--compare", std::to_string(files.size()) + " files", "two: before and after");
+  const std::string accepted = "what `delassus bench --json` or `delassus bench --table1 --json` prints, or a report's results.json; write it with > FILE";
+  if (files.size() != 2) throw ModelError("", "--compare", std::to_string(files.size()) + " files", "two: before and after; name both behind --compare");
   const bench::Comparison c = bench::compare(read_json(files[0], accepted), read_json(files[1], accepted), files[0], files[1]);
   print(c, as_json, bench::comparison_text);
   return c.worse(slack) > 0 ? slower : good;

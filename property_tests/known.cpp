@@ -156,6 +156,7 @@ double stiffness(const Case& c) {
 }
 
 double product_condition(const Case& c) {
+  if (c.rows() == 0) return 1;
   const VectorX<double> ones = VectorX<double>::Ones(c.rows());
   const MatrixX<Quad>& A = quad_definition(Function::apply, c);
   Quad norm(0);
@@ -198,6 +199,7 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
     VectorX<double> b;
     if (f == Function::apply) {
       b = s.apply_sensitivity(a);
+      if (op.apply_error == ErrorClass::amplified) b += s.apply_mobile(a);
     } else {
       VectorX<double> lambda(a.size());
       const MatrixX<Quad> exact = reference::product<Quad>(quad_definition(f, c), converted<Quad>(MatrixX<double>(a)));
@@ -218,7 +220,7 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
 }
 
 std::string_view bound_name(Function f, const OperatorRow& op, Data data) {
-  if (f == Function::apply) return "apply_sensitivity";
+  if (f == Function::apply) return op.apply_error == ErrorClass::amplified ? "apply_mobile + apply_sensitivity" : "apply_sensitivity";
   switch (op.solve_error) {
     case ErrorClass::componentwise: return "solve_sensitivity";
     case ErrorClass::normwise: return "solve_normwise";

@@ -168,7 +168,7 @@ const char* why_not_zero_columns(const OperatorRow& op, const Case&) {
 
 Verdict empty_sizes(const OperatorRow& op, const Case& c) {
   Route<double> route(op, c.problem, c.damping);
-  if (c.rows() == 0 && !route.updated().ok()) return failure("update without rows is not ok");
+  if (c.rows() == 0 && !route.updated().ok()) throw Broken("update without rows", route.updated());
   if (route.get().size() != c.rows()) return failure("size is not the number of rows");
   for (const Index columns : {Index(0), Index(2)}) {
     if (columns > 0 && c.rows() > 0) continue;

@@ -56,7 +56,7 @@ refused([delassus, "stress", "--time", "5x"], "--time", "'5x'", "a number of sec
 for time in ["0", "-1s", "1e999", "1e300h", "nan", ""]:
     refused([delassus, "stress", "--time", time], "--time", f"'{time}'", "a number of seconds > 0")
 refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite number > 0 [s]")
-refused([delassus, "bench", "--table1", "--swimmers"], "--swimmers", "--table1")
+misspelt([delassus, "bench", "--table1", "--swimmers"], "--swimmers", "--table1")
 refused([delassus, "bench", "--table1", "--from", "/nowhere/table1.json"], "/nowhere/table1.json", "cannot be read", "--table1 --json")
 refused([delassus, "bench", "--table1", "--scene", "swimmer:1", "--cache-lines", "/nowhere/phase_probe"], "/nowhere/phase_probe")
 refused([delassus, "bench", "--compare", "/nowhere/a.json"], "1 files", "two: before and after")

@@ -121,6 +121,52 @@ Matrix growth_of_bases(const Structure& s, MatrixX<Quad> M) {
   return C;
 }
 
+/// √(|κ|ᵀ |Ω_l| |κ|), the largest over the bodies l on the path of i. Shapes: omega 6 × 6 per body.
+double reach(const Structure& s, const std::vector<Matrix6<double>>& omega, Index i, const Vector6<double>& kappa) {
+  double largest = 0;
+  for (Index l = i; l != ground; l = s.parent[l]) largest = std::max(largest, kappa.dot(omega[l] * kappa));
+  return std::sqrt(largest);
+}
+
+/// ω of apply_mobile. Shape m. Cost n³, and n² per body.
+Vector reaches(const Problem<Quad>& p, const MatrixX<Quad>& M_inverse) {
+  const Structure& s = *p.structure;
+  const auto magnitude = [](const auto& x) { return x.unaryExpr([](const Quad& v) { return std::fabs(static_cast<double>(v)); }).eval(); };
+  std::vector<Matrix6<double>> omega;
+  std::vector<MatrixX<Quad>> D_inverse_Ut(static_cast<std::size_t>(s.bodies())), D_inverse = D_inverse_Ut;
+  std::vector<Matrix6<Quad>> inertia = p.H;  // articulated
+  for (Index i = 0; i < s.bodies(); ++i) {
+    const std::vector<Index> path = path_dofs(s, i);
+    Matrix6<Quad> mobility = Matrix6<Quad>::Zero();
+    for (const Index k : path)
+      for (const Index l : path) mobility += p.S[k] * M_inverse(k, l) * p.S[l].transpose();
+    omega.push_back(magnitude(mobility));
+  }
+  for (Index i = s.bodies(); i-- > 0;) {
+    const Index first = s.first_dof[i], n = s.dofs(i);
+    MatrixX<Quad> S(6, n), D(n, n);
+    for (Index k = 0; k < n; ++k) S.col(k) = p.S[first + k];
+    const MatrixX<Quad> U = inertia[i] * S;
+    D = S.transpose() * U;
+    for (Index k = 0; k < n; ++k) D(k, k) += p.armature[first + k];
+    D_inverse[i] = PivotedLdlt<Quad>(D).inverse();
+    D_inverse_Ut[i] = D_inverse[i] * U.transpose();
+    if (s.parent[i] != ground) inertia[s.parent[i]] += inertia[i] - U * D_inverse_Ut[i];
+  }
+  Vector w = Vector::Zero(s.rows);
+  for (const auto& e : s.link_constraints)
+    for (const auto& link : e.links)
+      for (Index r = 0; r < e.rows; ++r) w[e.row + r] += reach(s, omega, link.body, magnitude(p.K[link.first + r]));
+  for (const auto& j : s.joint_constraints)
+    for (Index r = 0; r < j.rows; ++r) {
+      const VectorX<Quad> k = Eigen::Map<const VectorX<Quad>>(p.joint_K.data() + j.first + r * s.dofs(j.body), s.dofs(j.body));
+      const Vector own = magnitude(k);
+      w[j.row + r] = std::sqrt(own.dot(magnitude(D_inverse[j.body]) * own));
+      if (s.parent[j.body] != ground) w[j.row + r] += reach(s, omega, s.parent[j.body], magnitude(Vector6<Quad>(D_inverse_Ut[j.body].transpose() * k)));
+    }
+  return w;
+}
+
 double norm(const Matrix& X) { return X.size() == 0 ? 0 : X.rowwise().sum().maxCoeff(); }
 double norm(const Vector& x) { return x.size() == 0 ? 0 : x.cwiseAbs().maxCoeff(); }
 
@@ -130,6 +176,8 @@ struct Sensitivity::Data {
   Dense<Quad> dense;
   Matrix J_abs, C, M_bound, M_inverse_abs, R_inverse_abs;
   Vector mass_scale;
+  Problem<Quad> problem;
+  std::optional<Vector> omega;  // of apply_mobile
 
   // A⁻¹ and what only the bounds of solve need.
   std::optional<PivotedLdlt<Quad>> A;
@@ -175,7 +223,8 @@ struct Sensitivity::Data {
 Sensitivity::Sensitivity(const Problem<double>& problem, const Damping<double>& damping)
     : data_(std::make_unique<Data>()) {
   Data& d = *data_;
-  d.dense = reference::dense(problem.cast<Quad>(), damping.cast<Quad>());
+  d.problem = problem.cast<Quad>();
+  d.dense = reference::dense(d.problem, damping.cast<Quad>());
   const Problem<double> p = absolute(problem);
   d.J_abs = constraint_jacobian(p);
   d.mass_scale = scale_of_mass(p);
@@ -202,6 +251,12 @@ VectorX<double> Sensitivity::apply_sensitivity(const VectorX<double>& x) const {
   const Vector of_rows = (d.C * rate + d.M_inverse_abs * (d.C.transpose() * force)) / 2;
   const Vector change = of_rows + through + unit_roundoff<double> * twice;
   return d.J_abs * change + d.R_inverse_abs * x.cwiseAbs();
+}
+
+VectorX<double> Sensitivity::apply_mobile(const VectorX<double>& x) const {
+  require(x.size() == rows(), "Sensitivity: wrong number of rows");
+  if (!data_->omega) data_->omega = reaches(data_->problem, PivotedLdlt<Quad>(data_->dense.M).inverse());
+  return *data_->omega * data_->omega->dot(x.cwiseAbs());
 }
 
 VectorX<Quad> Sensitivity::solve(const VectorX<double>& a) const {

@@ -13,6 +13,10 @@
 //            apply_sensitivity(x) = J_abs (C|M⁻¹| + |M⁻¹|Cᵀ)/2 J_absᵀ|x| + J_abs|M⁻¹|M_bound|M⁻¹|J_absᵀ|x| + |R⁻¹||x|
 //          and ε J_abs|M⁻¹|M_bound|M⁻¹|M_bound|M⁻¹|J_absᵀ|x|, of second order: it counts where the others are zero because both
 //          couplings of two branches to the joint between them happen to cancel exactly, which rounding does not see.
+// mobile   A_rs = Σ κ_r Ω κ_s over pairs of bodies, each mobility Ω_l = G_l M⁻¹G_lᵀ (G_l: S on the path of l) on its own. What bodies of
+//          one row have in common is not there in J, but cancels here, and so does what a joint lets go in Ω_l − Pᵀ… of large numbers:
+//            apply_mobile(x)_r = ω_r Σ_s ω_s |x_s|,   ω_r = Σ_{i∈r} max_{l on the path of i} √( |κ_r^i|ᵀ |Ω_l| |κ_r^i| ),
+//          κ = K; of a row 𝒦 on joint i, κ = 𝒦 D⁻¹U_iᵀ on π(i), and √(|𝒦||D⁻¹||𝒦|) beside it, with the articulated inertia of i.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
@@ -52,6 +56,10 @@ class Sensitivity {
   [[nodiscard]] Index rows() const;
   /// Bound on the error of A x. Shapes m. Cost n² + n m.
   [[nodiscard]] VectorX<double> apply_sensitivity(const VectorX<double>& x) const;
+
+  /// What is added where A is formed by mobilities of bodies. Shapes m. The first call costs n³ in Quad (not safe to make from two
+  /// threads at once).
+  [[nodiscard]] VectorX<double> apply_mobile(const VectorX<double>& x) const;
 
   // The bounds of solve: the first call costs m³ in Quad (not safe to make from two threads at once).
   /// A has no lost pivot in Quad; the three functions that need A⁻¹ throw std::runtime_error when it is not regular.

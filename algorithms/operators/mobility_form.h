@@ -7,6 +7,7 @@
 //          beyond the joint, while π(i) stands still; with another row of the joint 𝒦 D⁻¹𝒦'ᵀ.
 // Sites    bodies on which rows act, κ of each of them: `link rows` and those of joints outwards.
 // Here     rows of one site, and of one joint. The three operators differ in how they come by Ω_ij.
+// Error    eps of the mobilities of single bodies, not of what is left of them in A₀ (apply_mobile, reference/sensitivity.h).
 // Cost     300 per active joint, 11 per pair of rows of a site; m² to finish.
 #pragma once
 

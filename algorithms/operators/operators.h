@@ -16,7 +16,8 @@ enum class ErrorClass : std::uint8_t {
   componentwise,  ///< forward error within the data's own componentwise sensitivity
   normwise,       ///< forward error within κ(A) · eps
   refined,        ///< componentwise, or eps of the largest entry and eps in the energy norm, whichever is larger
-  amplified,      ///< forward error R·λmax(Λ⁻¹) larger: the direct inversion-lemma formula
+  amplified,      ///< solve: forward error R·λmax(Λ⁻¹) larger, the direct inversion-lemma formula; apply: mobilities of single bodies,
+                  ///< which cancel in A
 };
 [[nodiscard]] std::string_view name(ErrorClass e);
 
