@@ -40,7 +40,9 @@ std::string script(const std::string& x_axis, const std::string& y_axis, const s
   std::ostringstream s;
   s << "set terminal svg size 640,340 dynamic font 'sans-serif,13'\n"
        "set encoding utf8\n"
-    << (axes == Axes::logarithmic ? "set logscale xy\nset format '10^{%T}'\n" : "set yrange [0:*]\n")
+    << (axes == Axes::logarithmic ? "set logscale xy\nset format '10^{%T}'\n"
+        : axes == Axes::profile   ? "set logscale x\nset yrange [0:1.02]\nset format x '%g'\n"
+                                  : "set yrange [0:*]\n")
     << "set grid lw 0.6\nset border 3\nset tics nomirror\n"
        "set key outside right top reverse Left samplen 2.5 spacing 1.15\n"
     << "set xlabel '" << x_axis << "'\nset ylabel '" << y_axis << "'\nplot ";

@@ -1,6 +1,7 @@
 // One quantity against another, drawn by gnuplot as inline SVG.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,7 @@ struct Series {
   bool ringed = false;    ///< the first point, by labelled_plot
 };
 
-enum class Axes : bool { linear, logarithmic };
+enum class Axes : std::uint8_t { linear, logarithmic, profile };  ///< profile: x logarithmic, y a share from 0 to 1
 
 /// An SVG element that fits into a page: no fixed size, text and axes in the page's own colour. Empty when gnuplot is
 /// not installed or fails. `id` must be unique on the page; `label` is read out by screen readers.

@@ -19,12 +19,13 @@ struct Options {
   std::vector<std::string> scenes, ops;
   std::string baseline;
   double budget = 0.02, slack = 1.5;
-  bool as_json = false, table1 = false, swimmers = false;
+  bool as_json = false, table1 = false, swimmers = false, solvers = false;
   std::vector<std::string> compared;
   std::string from, probe, pictures;
   std::int64_t largest = 100000;
   double longest = 1, gigabytes = 1;
   SceneOptions opening;
+  SolversOptions of_solvers;
 };
 
 constexpr const char* phases[] = {"analyze", "update", "new_damping", "apply", "solve"};
@@ -105,6 +106,12 @@ int run_bench(const Options& o) {
   if (!o.compared.empty()) return run_compare(o.compared, o.slack, o.as_json);
   if (o.table1) return run_table1({o.scenes, o.ops, o.from, o.probe, o.budget, o.as_json});
   if (o.swimmers) return run_swimmers({o.from, o.pictures, o.budget, o.longest, o.gigabytes, o.largest, o.as_json});
+  if (!o.pictures.empty() && !o.solvers) throw ModelError("", "--pictures", "given without --swimmers or --solvers", "one of these two; the others draw nothing");
+  if (o.solvers) {
+    SolversOptions s = o.of_solvers;
+    s.from = o.from, s.pictures = o.pictures, s.as_json = o.as_json;
+    return run_solvers(s);
+  }
   json baseline;
   if (!o.baseline.empty()) baseline = read_baseline(o.baseline);
   json out = {{"units", {{"time", "µs per call"}, {"memory", "bytes"}}}, {"scenes", json::array()}};
@@ -129,11 +136,17 @@ void add_bench(options::Command& app, Run& run) {
   options::Option* table1 = c->add_flag("--table1", o->table1, "the paper's Table I: thirteen scenes, every column, every operator, beside the paper's figures (docs/results.md)");
   options::Option* swimmers = c->add_flag("--swimmers", o->swimmers, "the paper's Fig. 2: every operator on swimmers of growing length, with the slopes");
   swimmers->excludes(table1);
-  c->add_option("--from", o->from, "print what --table1 --json or --swimmers --json wrote instead of measuring");
+  options::Option* solvers = c->add_flag("--solvers", o->solvers, "contact solvers: success over the density of contacts, failures, performance profiles at 1e-4, 1e-8, 1e-12 (docs/solvers.md)");
+  solvers->excludes(table1)->excludes(swimmers);
+  c->add_option("--solver", o->of_solvers.solvers, "only these solvers")->needs(solvers);
+  c->add_option("--problems", o->of_solvers.problems, "a folder of contact problems, *.dat, besides the generated ones")->needs(solvers);
+  c->add_option("--seeds", o->of_solvers.seeds, "generated problems of each kind")->check(options::whole(1))->needs(solvers)->capture_default_str();
+  c->add_option("--iterations", o->of_solvers.iterations, "that a solver has at most")->check(options::whole(1))->needs(solvers)->capture_default_str();
+  c->add_option("--from", o->from, "print what --table1, --swimmers or --solvers wrote with --json instead of measuring");
   c->add_option("--largest", o->largest, "links of the longest swimmer")->check(options::whole(3))->needs(swimmers)->capture_default_str();
   c->add_option("--longest", o->longest, "an operator is left out where one of its phases would take longer [s]")->check(options::above(0, "s"))->needs(swimmers)->capture_default_str();
   c->add_option("--memory", o->gigabytes, "or it would hold more [GB]")->check(options::above(0, "GB"))->needs(swimmers)->capture_default_str();
-  c->add_option("--pictures", o->pictures, "directory for swimmers_product.svg and swimmers_solve.svg")->needs(swimmers);
+  c->add_option("--pictures", o->pictures, "directory for the pictures of --swimmers or --solvers");
   c->add_option("--compare", o->compared, "two files of results, before and after: what changed by more than its spread explains (nothing is measured)");
   c->add_option("--cache-lines", o->probe, "a phase_probe (scripts/build avx2 phase_probe: build/avx2/bench/phase_probe) to count distinct cache lines with, by valgrind")->check(options::existing_file())->needs(table1);
   c->add_option("--baseline", o->baseline, "JSON of an earlier run on the same machine");

@@ -7,7 +7,9 @@
 #include "bench/compare.h"
 #include "bench/figure2.h"
 #include "bench/report.h"
+#include "bench/solver_profile.h"
 #include "bench/table1.h"
+#include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/interrupt.h"
@@ -65,6 +67,29 @@ int run_swimmers(const SwimmersOptions& o) {
     for (const bool solves : {false, true})
       std::ofstream(std::filesystem::path(o.pictures) / (solves ? "swimmers_solve.svg" : "swimmers_product.svg")) << bench::figure2_picture(f, solves);
   return o.from.empty() ? end_of_run(good, "lengths are missing") : good;
+}
+
+int run_solvers(const SolversOptions& o) {
+  if (!o.pictures.empty()) bench::check_writable(o.pictures);
+  bench::SolverProfile p;
+  if (!o.from.empty()) {
+    p = read_results<bench::SolverProfile>(o.from, "what `delassus bench --solvers --json` prints; write it with > FILE");
+  } else {
+    std::vector<simulation::SolverRow> rows;
+    for (const std::string& name : o.solvers) rows.push_back(simulation::find_solver(name));
+    auto problems = bench::generated_problems(static_cast<int>(o.seeds));
+    if (!o.problems.empty())
+      for (auto& q : bench::problems_of(o.problems)) problems.push_back(std::move(q));
+    keep_on_interrupt();
+    p = bench::profile_solvers(problems, rows.empty() ? simulation::solvers() : rows, static_cast<int>(o.iterations), say, interrupted);
+  }
+  std::printf("%s", (o.as_json ? bench::solver_json(p) : bench::solver_text(p)).c_str());
+  for (const std::string& set : o.pictures.empty() ? std::vector<std::string>{} : bench::sets_of(p))
+    for (std::size_t k = 0; k < bench::wanted_count; ++k)
+      for (const auto by : {bench::Measure::time, bench::Measure::iterations})
+        std::ofstream(std::filesystem::path(o.pictures) / bench::format("solvers_%s_%.0e_%s.svg", set.c_str(), bench::wanted_residuals[k], by == bench::Measure::time ? "time" : "iterations"))
+            << bench::solver_picture(p, set, k, by);
+  return o.from.empty() ? end_of_run(good, "problems are missing") : good;
 }
 
 int run_compare(const std::vector<std::string>& files, double slack, bool as_json) {

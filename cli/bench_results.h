@@ -1,4 +1,4 @@
-// `delassus bench --table1`, `--swimmers` and `--compare`: results measured, or printed from files of results.
+// `delassus bench --table1`, `--swimmers`, `--solvers` and `--compare`: results measured, or printed from files of results.
 #pragma once
 
 #include <string>
@@ -19,9 +19,17 @@ struct SwimmersOptions {
   bool as_json = false;
 };
 
+struct SolversOptions {
+  std::vector<std::string> solvers;      ///< empty: all
+  std::string from, problems, pictures;  ///< results to print instead of measuring; a folder of problems besides; a directory for the pictures
+  std::int64_t seeds = 2, iterations = 10000;
+  bool as_json = false;
+};
+
 // They return the exit code.
 [[nodiscard]] int run_table1(const Table1Options& o);
 [[nodiscard]] int run_swimmers(const SwimmersOptions& o);
+[[nodiscard]] int run_solvers(const SolversOptions& o);
 [[nodiscard]] int run_compare(const std::vector<std::string>& files, double slack, bool as_json);
 
 }  // namespace delassus::cli

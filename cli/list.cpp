@@ -7,6 +7,7 @@
 #include "cli/common.h"
 #include "cli/list_laws.h"
 #include "cli/effects.h"
+#include "cli/solvers.h"
 #include "generators/families.h"
 #include "property_tests/defects.h"
 #include "reference/reference.h"
@@ -72,7 +73,8 @@ struct Table {
   json (*rows)();
 };
 constexpr Table tables[] = {{"operators", operators_json}, {"references", references_json}, {"families", families_json},
-                            {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json},     {"effects", effects_list}};
+                            {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json},     {"effects", effects_list},
+                            {"solvers", solvers_list}};
 
 void print_table(const json& rows) {
   std::size_t width = 0;
@@ -96,6 +98,7 @@ void print_markdown(const std::string& table, const json& rows) {
     }
     return;
   }
+  if (table == "solvers") return print_solvers_markdown(rows);
   if (table == "effects") {
     std::printf("| effect | what it is | called for by | energy |\n|---|---|---|---|\n");
     for (const json& r : rows)
@@ -136,7 +139,7 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
 }  // namespace
 
 void add_list(options::Command& app, Run& run) {
-  options::Command* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects");
+  options::Command* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects, solvers");
   auto table = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
   std::vector<std::string> names;

@@ -59,6 +59,11 @@ refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite numbe
 misspelt([delassus, "bench", "--table1", "--swimmers"], "--swimmers", "--table1")
 refused([delassus, "bench", "--table1", "--from", "/nowhere/table1.json"], "/nowhere/table1.json", "cannot be read", "--table1 --json")
 refused([delassus, "bench", "--table1", "--scene", "swimmer:1", "--cache-lines", "/nowhere/phase_probe"], "/nowhere/phase_probe")
+refused([delassus, "bench", "--solvers", "--from", "/nowhere/solvers.json"], "/nowhere/solvers.json", "cannot be read", "--solvers --json")
+refused([delassus, "bench", "--solvers", "--problems", "/nowhere"], "/nowhere", "cannot be read", "*.dat")
+refused([delassus, "bench", "--solvers", "--solver", "pgss"], "\"pgss\"", "pgs")
+refused([delassus, "bench", "--pictures", "/tmp"], "--pictures", "--swimmers or --solvers")
+misspelt([delassus, "bench", "--table1", "--solvers"], "--solvers", "--table1")
 refused([delassus, "bench", "--compare", "/nowhere/a.json"], "1 files", "two: before and after")
 for program in programs:
     printed([tests / program, "--help"], "Exit code 1", "--help")
@@ -155,6 +160,7 @@ printed([delassus, "check", "--family", "heavy_base", "--n", "6", "--digits", "-
 if "WARNING" in printed([delassus, "check", "cassie", "--digits", "--damping", "1e-4"]):
     failures.append("check --digits warns of a problem that lcaba solves")
 printed([delassus, "list", "effects"], "gravity", "armature")
+printed([delassus, "list", "solvers", "--json"], "newton_convex", "exact Coulomb")
 
 
 # A scene that moves.

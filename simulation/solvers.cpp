@@ -53,7 +53,7 @@ const std::vector<SolverRow>& solvers() {
 const SolverRow& find_solver(std::string_view wanted) {
   for (const SolverRow& row : solvers())
     if (row.name == wanted) return row;
-  throw ModelError("", "solver", "there is no solver " + in_quotes(wanted), accepted_names(wanted, solvers()));
+  throw ModelError("", "solver", "there is no solver " + in_quotes(wanted), accepted_names(wanted, solvers()) + "; see `delassus list solvers`");
 }
 
 }  // namespace delassus::simulation

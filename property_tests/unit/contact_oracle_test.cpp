@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "generators/random.h"
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 #include "reference/contact_oracle.h"
 #include "reference/contact_residual.h"
 #include "simulation/solvers.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "property_tests/allocations.h"
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 #include "reference/definition.h"
 #include "property_tests/laws.h"
 #include "simulation/solvers.h"

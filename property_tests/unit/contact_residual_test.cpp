@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "generators/random.h"
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 #include "reference/contact_residual.h"
 #include "simulation/residual.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "generators/random.h"
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 #include "reference/definition.h"
 #include "simulation/solvers/primal_newton.h"
 

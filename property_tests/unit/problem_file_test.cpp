@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 #include "simulation/problem_file.h"
 #include "simulation/solvers.h"
 

@@ -9,7 +9,8 @@ namespace delassus {
 
 struct PileSpec {
   Index bodies = 4;
-  Index contacts = 6;            ///< 3 n_c / n = contacts / (2 bodies)
+  Index contacts = 6;            ///< 3 n_c / n = contacts / (2 bodies); with joints 3 contacts / (bodies + 5)
+  Index distinct = 0;            ///< contacts beyond so many repeat the earlier ones, whose rows they depend on; 0: none repeats
   double friction = 0.5;         ///< coefficients between half of it and it
   double damping = 0;            ///< R⁻¹ over the mean diagonal of G; 0: hard
   bool joints = false;           ///< chains of revolute joints in the place of free bodies

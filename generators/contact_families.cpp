@@ -1,4 +1,4 @@
-#include "property_tests/contact_families.h"
+#include "generators/contact_families.h"
 
 #include "generators/build.h"
 #include "generators/draft.h"
@@ -18,6 +18,10 @@ generators::Spec bodies(const PileSpec& s) {
     b.mass_decade = s.mass_decades > 0 ? d.random.integer(0, s.mass_decades) : 0;
   }
   for (Index k = 0; k < s.contacts; ++k) {
+    if (s.distinct > 0 && k >= s.distinct) {
+      d.spec.links.push_back(d.spec.links[static_cast<std::size_t>(k - s.distinct)]);
+      continue;
+    }
     const Index a = k % s.bodies;
     const Index other = d.random.integer(0, 2) == 0 ? -1 : d.random.integer(0, static_cast<int>(s.bodies) - 1);
     if (other < 0 || other == a) d.link(ConstraintKind::contact, {a});
