@@ -54,6 +54,30 @@ TEST(ContactPiles, ExactCoulombWithHardRows) {
     }
 }
 
+// Hard rows that depend on each other: λ = −R u cancels, and proximal must see where (the seeds of a table at which it stalled).
+TEST(ContactPiles, ProximalReachesTheLastDigitsOfDependentRows) {
+  for (const Index contacts : {20, 50})
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      auto p = pile({.bodies = 5, .contacts = contacts, .seed = seed});
+      for (ConeRows& c : p.groups) c.cone = Cone::free;
+      std::fill(p.friction.begin(), p.friction.end(), 0);
+      const auto solver = find_solver("proximal").make();
+      solver->analyze(p);
+      VectorX<double> lambda;
+      const auto report = solver->solve(p, {1e-12 * p.free_velocity.lpNorm<Eigen::Infinity>(), 500}, lambda);
+      EXPECT_TRUE(report.ok()) << contacts << " contacts, seed " << seed << ": " << name(report.status) << ", " << report.residuals.natural;
+    }
+}
+
+TEST(ContactPiles, ProximalGoesOnWhereAPivotIsLost) {
+  const auto p = pile({.bodies = 5, .contacts = 30, .damping = 1e-4, .seed = 0});
+  const auto solver = find_solver("proximal").make();
+  solver->analyze(p);
+  VectorX<double> lambda;
+  const auto report = solver->solve(p, {1e-6 * p.free_velocity.lpNorm<Eigen::Infinity>(), 2000}, lambda);
+  EXPECT_TRUE(report.ok()) << name(report.status) << " after " << report.iterations << ": " << report.residuals.natural;
+}
+
 // The second problem of a structure is solved without a single allocation.
 TEST(ContactPiles, NothingIsAllocatedAfterTheFirstSolve) {
   laws::count_allocations();

@@ -8,7 +8,7 @@ template <class T> void ProximalNewton<T>::do_analyze(const ContactProblem<T>& p
 }
 
 // E per cone, and R⁻¹ + E.
-template <class T> void ProximalNewton<T>::shift(const ContactProblem<T>& p) {
+template <class T> void ProximalNewton<T>::shift(const ContactProblem<T>& p, double epsilon) {
   const VectorX<T>& d = this->op_.diagonal();
   const T mean = p.rows() > 0 && d.sum() > T(0) ? T(d.sum() / T(static_cast<double>(p.rows()))) : T(1);
   for (const ConeRows& c : p.groups) {
@@ -26,10 +26,15 @@ template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem
   SolverReport report;
   Report made = newton_.start(p);
   if (made.ok()) made = newton_.begin_at(lambda);
-  shift(p);
+  double epsilon = least_epsilon, before = std::numeric_limits<double>::infinity();
+  shift(p, epsilon);
   while (made.ok()) {
-    if (this->judged(p, lambda).natural <= wanted.velocity) return report;
+    const double reached = this->judged(p, lambda).natural;
+    if (reached <= wanted.velocity) return report;
     if (report.iterations >= wanted.iterations) break;
+    const double cancelled = unit_roundoff<T> * static_cast<double>(p.rows()) * static_cast<double>(b_.template lpNorm<Eigen::Infinity>()) / epsilon;
+    if (reached >= before && reached <= cancelled && epsilon < 1) shift(p, epsilon = 10 * epsilon);
+    before = reached;
     before_ = lambda;
     b_ = p.free_velocity - p.target - (E_.array() * before_.array()).matrix();
     if (p.law == FrictionLaw::exact)
@@ -38,6 +43,11 @@ template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem
     const auto out = newton_.minimise(R_inverse_, b_, 0, wanted.iterations - report.iterations, lambda);
     report.iterations += std::max(out.iterations, 1);
     made = out.report;
+    if (made.status == Status::lost_pivot && epsilon < 1) {
+      lambda = before_;
+      made = {};
+      shift(p, epsilon = 10 * epsilon);
+    }
   }
   report.status = made.ok() ? Status::not_converged : made.status;
   report.where = static_cast<Index>(made.where);

@@ -4,6 +4,8 @@
 // Formula  λ ← argmin over K of ½ λᵀ(G + R⁻¹)λ + λᵀ(g − target + Γ e_n) + ½ ‖λ − λ before‖²_E,   E = diag(ε γ_c) where R⁻¹ < ε γ_c
 //            = the problem of primal_newton.h with R⁻¹ + E and b − E λ before + Γ e_n;  it begins at the motion before
 //          Γ ← ‖(μ_i u_i)‖ at the last motion (exact; relaxed 0)
+// ε        1e-4. λ = λ before − (J w + …)/E cancels: velocities of m eps ‖b‖/ε are left. Where the residual is below that and falls no
+//          more, and where a pivot is lost beside 1/E, ε grows tenfold, up to 1: slower by then, but to the last digits.
 // End      natural residual. The proximal part converges by a factor ε/(ε + σ) in a direction of weight σ; Γ is a fixed point
 //          that need not converge: not_converged says so.
 // Cost     Newton's iterations, O(n + m) each; the report counts them.
@@ -17,7 +19,7 @@ namespace delassus::simulation {
 
 template <class T> class ProximalNewton : public ContactSolver<T> {
  public:
-  static constexpr double epsilon = 1e-4;
+  static constexpr double least_epsilon = 1e-4;
   [[nodiscard]] std::string refusal(const ContactProblem<T>& p) const override { return PrimalNewton<T>::refusal(p); }
 
  protected:
@@ -25,7 +27,7 @@ template <class T> class ProximalNewton : public ContactSolver<T> {
   SolverReport do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) override;
 
  private:
-  void shift(const ContactProblem<T>& p);
+  void shift(const ContactProblem<T>& p, double epsilon);
   PrimalNewton<T> newton_;
   VectorX<T> R_inverse_, E_, b_, before_;
 };
