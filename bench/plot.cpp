@@ -88,11 +88,14 @@ std::string labelled_script(const std::string& x_axis, const std::string& y_axis
     wanted.push_back(std::log(ends.back().second / y.low) / std::log(y.high / y.low));
   }
   const std::vector<double> at = spread(wanted, 0.055);
+  std::size_t longest = 22;  // characters that fit beside a plot of 520
+  for (const Series& one : series) longest = std::max(longest, one.title.size());
+  const double wide = 520 + 7.5 * static_cast<double>(longest - 22), narrow = 520 / wide;
   std::ostringstream s;
-  s << "set terminal svg size 520,430 dynamic font 'sans-serif,14'\nset encoding utf8\nset logscale xy\n"
-       "set rmargin at screen 0.68\nset bmargin at screen 0.155\nset tmargin at screen 0.98\n"
+  s << format("set terminal svg size %.0f,430", wide) << " dynamic font 'sans-serif,14'\nset encoding utf8\nset logscale xy\n"
+    << format("set rmargin at screen %g\n", 0.68 * narrow) << "set bmargin at screen 0.155\nset tmargin at screen 0.98\n"
        "set grid lw 0.6\nset border 3\nset tics nomirror\nset format '10^{%T}'\nunset key\nset clip two\n"
-    << format("set lmargin at screen %g\n", y.low < 1e-9 ? 0.17 : 0.135)  // 10⁻¹⁶ is wider than 10³
+    << format("set lmargin at screen %g\n", (y.low < 1e-9 ? 0.17 : 0.135) * narrow)  // 10⁻¹⁶ is wider than 10³
     << format("set xrange [%g:%g]\nset yrange [%g:%g]\n", x.low / 3, x.high * 3, y.low, y.high)
     << format("set xtics %g\nunset mxtics\n", x.high / x.low > 1e8 ? 1e4 : 10.0)
     << "set xlabel '" << x_axis << "'\nset ylabel '" << y_axis << "' offset 0.5,0\n";

@@ -10,6 +10,7 @@
 #include "bench/accuracy_digest.h"
 #include "bench/plot.h"
 #include "bench/text.h"
+#include "cli/accuracy_simulation.h"
 #include "cli/accuracy_steps.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -33,7 +34,8 @@ struct Options {
   Index n = 0;
   std::uint64_t seed = 1;
   double seconds = 1200;
-  bool all = false, no_time = false, steps = false, as_json = false;
+  bool all = false, no_time = false, steps = false, simulate = false, as_json = false;
+  SimulateOptions simulated;
   SceneOptions opening;
 };
 
@@ -179,6 +181,35 @@ int steps(const Options& o) {
   return good;
 }
 
+/// Whole simulations.
+int simulations(const Options& o) {
+  SimulationOptions measured = o.simulated.measured;
+  measured.duration = options::seconds_of(o.simulated.duration);
+  measured.ops = o.ops;
+  measured.stop = interrupted;
+  if (o.no_time) measured.budget = 0;
+  if (!o.simulated.picture.empty() && (o.no_time || o.subjects.size() != 1))
+    throw ModelError(o.simulated.picture, "--picture", o.no_time ? "is given with --no-time" : "is given with several scenes", "one scene, and its times");
+  if (const std::string& file = o.simulated.picture; !file.empty() && !std::ofstream(file, std::ios::app))
+    throw ModelError(file, "--picture", "cannot be written", "a .svg file in a folder that exists; make the folder first");
+  json out = json::array();
+  for (const std::string& name : o.subjects) {
+    if (interrupted()) break;
+    if (is_family(name)) throw ModelError("", "--simulate", "is given with the family " + in_quotes(name) + ", which does not move", "scenes; `delassus list scenes`");
+    const Scene scene = open(name, o.opening);
+    const SimulatedScene s = measure_simulation(scene, measured);
+    out.push_back(simulated_json(s));
+    if (const json warnings = warnings_json(scene); !warnings.empty()) out.back()["warnings"] = warnings;
+    if (!o.as_json) print_simulated(s);
+    if (o.simulated.picture.empty()) continue;
+    const std::string svg = picture(s);
+    if (svg.empty()) throw ModelError(o.simulated.picture, "--picture", "has nothing to show, or gnuplot cannot be run", "a scene of which a run ends well, and a machine with gnuplot");
+    write(std::filesystem::absolute(o.simulated.picture), bench::standalone(svg));
+  }
+  if (o.as_json) std::printf("%s\n", out.dump(1).c_str());
+  return good;
+}
+
 /// The figures of docs/accuracy.md.
 int all(const Options& o) {
   accuracy::Options timed = settings(o);
@@ -215,7 +246,7 @@ int run_accuracy(const Options& o) {
   if (o.all && o.steps) throw ModelError("", "accuracy", "--all and --steps are given", "--steps with subjects; leave one of the two away");
   static_cast<void>(rungs({o.claim}));  // throws, listing the names
   keep_on_interrupt();
-  return end_of_run(o.all ? all(o) : o.steps ? steps(o) : some(o), "what follows was not measured");
+  return end_of_run(o.all ? all(o) : o.steps ? steps(o) : o.simulate ? simulations(o) : some(o), "what follows was not measured");
 }
 
 }  // namespace
@@ -224,19 +255,21 @@ void add_accuracy(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("accuracy", "error against time and operations for every rung and damping");
   auto o = std::make_shared<Options>();
   c->add_option("SUBJECT", o->subjects, "scenes (also files and swimmer:N) and families");
-  c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(options::whole(1));
-  c->add_option("--seed", o->seed, "of families and of the right-hand side")->check(options::whole(0))->capture_default_str();
-  c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2")->check(options::at_least(0, "1/kg"));
-  c->add_option("--op", o->ops, "only these rungs");
-  c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->check(options::any_number("m"))->capture_default_str();
-  c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(options::one_of({"consistent", "random"}))->capture_default_str();
-  c->add_option("--claim", o->claim, "the rung the claim is about")->capture_default_str();
-  c->add_option("--out", o->out, "directory for the pictures (SVG)");
-  c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(options::above(0, "s"))->capture_default_str();
-  c->add_flag("--all", o->all, "every scene at its place and 1000 km away, every family at its own damping; to 1e14 where timed");
-  c->add_flag("--steps", o->steps, "the error after each step of refinement, proximal and Krylov iterations, at --damping (0: hard rows) or the own one");
+  const options::Option* simulate = c->add_flag("--simulate", o->simulate, "whole simulations of scenes: integrators, solvers, tolerances and steps");
+  c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(options::whole(1))->excludes(simulate);
+  c->add_option("--seed", o->seed, "of families and of the right-hand side")->check(options::whole(0))->capture_default_str()->excludes(simulate);
+  c->add_option("--damping", o->dampings, "R⁻¹ of every row [1/kg]; when left out, 1e-14, 1e-12, … 1e-2")->check(options::at_least(0, "1/kg"))->excludes(simulate);
+  c->add_option("--op", o->ops, "only these rungs; with --simulate, these operators of equations");
+  c->add_option("--away", o->away, "move scenes by this along x before their kinematics [m]")->check(options::any_number("m"))->capture_default_str()->excludes(simulate);
+  c->add_option("--rhs", o->rhs, "consistent: a = J ν; random: any a")->check(options::one_of({"consistent", "random"}))->capture_default_str()->excludes(simulate);
+  c->add_option("--claim", o->claim, "the rung the claim is about")->capture_default_str()->excludes(simulate);
+  c->add_option("--out", o->out, "directory for the pictures (SVG)")->excludes(simulate);
+  c->add_option("--seconds", o->seconds, "with --all: what is not begun by then is left out")->check(options::above(0, "s"))->capture_default_str()->excludes(simulate);
+  c->add_flag("--all", o->all, "every scene at its place and 1000 km away, every family at its own damping; to 1e14 where timed")->excludes(simulate);
+  c->add_flag("--steps", o->steps, "the error after each step of refinement, proximal and Krylov iterations, at --damping (0: hard rows) or the own one")->excludes(simulate);
   c->add_flag("--no-time", o->no_time, "no times, no counted operations, no pictures");
   c->add_flag("--json", o->as_json, "an array of {subject, dof, rows, away, levels, of scenes also warnings}");
+  add_simulate_options(*c, o->simulated, simulate);
   add_scene_options(*c, o->opening);
   c->footer("Errors are against an answer in Quad: max|δλ|/max|λ|, ‖δν‖/‖ν‖ in the norm of M, backward. The motion of lcaba_refined "
             "is its own ν, that of others M⁻¹Jᵀλ. The claim: on scenes, from 1e-14 to 1e-2, a rung's motion error is "

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -48,8 +49,8 @@ struct Ran {
   double seconds = 0;           ///< of stepping alone
   simulation::StepReport last;
   Index most_rows = 0;
-  std::int64_t iterations = 0;
-  double residual = 0, drift = 0, left = 0;
+  std::int64_t iterations = 0, taken = 0, rejected = 0;
+  double residual = 0, drift = 0, left = 0, error = 0;
   simulation::Observed<double> begin, end;
 };
 
@@ -100,6 +101,9 @@ Ran run_scene(const Options& o, const Scene& scene) {
     ++out.steps;
     out.most_rows = std::max(out.most_rows, r.rows);
     out.iterations += r.iterations;
+    out.taken += r.taken;
+    out.rejected += r.rejected;
+    out.error = std::max(out.error, r.error);
     out.residual = std::max(out.residual, r.residual);
     out.drift = std::max(out.drift, r.drift);
     out.left = std::max(out.left, r.left);
@@ -164,10 +168,12 @@ json energy_json(const simulation::Observed<double>& o) {
 }
 
 json ran_json(const Options& o, const Scene& scene, const Ran& r) {
-  return {{"scene", scene.name}, {"step", o.settings.step}, {"steps", r.steps}, {"time", static_cast<double>(r.steps) * o.settings.step},
+  json out = {{"scene", scene.name}, {"step", o.settings.step}, {"steps", r.steps}, {"time", static_cast<double>(r.steps) * o.settings.step},
           {"seconds", r.seconds}, {"begin", energy_json(r.begin)}, {"end", energy_json(r.end)}, {"most_rows", r.most_rows},
           {"iterations", r.iterations}, {"residual", r.residual}, {"drift", r.drift}, {"left", r.left}, {"path", r.last.path},
           {"status", name(r.last.report.status)}, {"message", r.last.message}, {"interrupted", interrupted()}};
+  if (o.settings.error > 0) out["error_control"] = {{"accuracy", o.settings.error}, {"largest", r.error}, {"taken", r.taken}, {"rejected", r.rejected}};
+  return out;
 }
 
 void print_ran(const Options& o, const Ran& r) {
@@ -176,6 +182,9 @@ void print_ran(const Options& o, const Ran& r) {
               r.seconds > 0 ? static_cast<double>(r.steps) / r.seconds : 0.0);
   std::printf("energy    %.8g J → %.8g J (kinetic %.6g → %.6g)\n", r.begin.energy(), r.end.energy(), r.begin.kinetic, r.end.kinetic);
   std::printf("centre    (%.6g, %.6g, %.6g) m → (%.6g, %.6g, %.6g) m\n", r.begin.centre[0], r.begin.centre[1], r.begin.centre[2], r.end.centre[0], r.end.centre[1], r.end.centre[2]);
+  if (o.settings.error > 0)
+    std::printf("accuracy  %lld steps taken, %lld rejected; largest error %.2g of %g a second [m, rad, m/s, rad/s]\n", static_cast<long long>(r.taken),
+                static_cast<long long>(r.rejected), r.error, o.settings.error);
   if (r.drift > 0) std::printf("drift     at most %.2g m or rad a step, %.2g after closing\n", r.drift, r.left);
   if (r.most_rows > 0)
     std::printf("rows      at most %lld; solver %.1f iterations a step, residual at most %.2g m/s\n", static_cast<long long>(r.most_rows),
@@ -216,10 +225,11 @@ void add_simulate(options::Command& app, Run& run) {
   auto o = std::make_shared<Options>();
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--duration", o->duration, "simulated time: 10, 10s, 5m, 1h")->check(options::duration())->capture_default_str();
-  c->add_option("--step", o->settings.step, "step [s]")->check(options::above(0, "s"))->capture_default_str();
+  const options::Option* step = c->add_option("--step", o->settings.step, "step [s]; with --accuracy where steps land, 1/60 or less when left out")->check(options::above(0, "s"))->capture_default_str();
   std::vector<std::string> integrators;
   for (const auto& row : simulation::integrators()) integrators.emplace_back(row.name);
-  c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta: explicit, of order 4, scenes without rows")->check(options::one_of(integrators))->capture_default_str();
+  const options::Option* integrator = c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta, dormand_prince: explicit, of orders 4 and 5, scenes without rows")->check(options::one_of(integrators))->capture_default_str();
+  c->add_option("--accuracy", o->settings.error, "the steps follow their error: at most this much in a second of them [m, rad, m/s, rad/s]; by dormand_prince, for scenes without rows")->check(options::above(0, ""));
   c->add_option("--gravity", o->gravity, "acceleration along −z instead of the scene's [m/s²]: a robot's file has none")->check(options::at_least(0, "m/s²"));
   c->add_option("--record", o->record, "FILE.csv or FILE.json: q, ν, energies, rows, residual and drift of every step; FILE.html: a page that plays the run");
   c->add_option("--every", o->every, "record every so many steps (default: 1; 60 a second for a page)")->check(options::whole(1));
@@ -235,7 +245,12 @@ void add_simulate(options::Command& app, Run& run) {
   c->add_flag("--json", o->as_json, "the summary, or the explanation, as JSON");
   add_scene_options(*c, o->opening);
   c->footer("Ctrl-C ends after the step; what was computed is written. Exit code 1 when a step does not end well: no impulse is used that misses the residual.");
-  c->callback([=, &run] { run = [=] { return simulate(*o); }; });
+  c->callback([=, &run] {
+    if (o->settings.error > 0 && integrator->count() == 0) o->settings.integrator = "dormand_prince";
+    const double duration = options::seconds_of(o->duration);
+    if (o->settings.error > 0 && step->count() == 0) o->settings.step = duration / std::ceil(60 * duration);
+    run = [=] { return simulate(*o); };
+  });
 }
 
 }  // namespace delassus::cli

@@ -169,6 +169,22 @@ printed([delassus, "simulate", hammer, "--duration", "0.02"], "20 steps of 0.001
 printed([delassus, "simulate", hammer, "--explain"], "hammer.yaml:2", "no joint has armature", "path cones")
 printed([delassus, "simulate", hammer, "--explain", "--without", "contacts"], "left out", "nothing to act on without contacts", "path equations")
 refused([delassus, "simulate", hammer, "--without", "contact"], "contact", "did you mean contacts?")
+moving = pathlib.Path(__file__).parent.parent / "docs/moving"
+printed([delassus, "simulate", moving / "racket.yaml", "--accuracy", "1e-8"], "steps taken", "rejected", "of 1e-08 a second")
+printed([delassus, "simulate", moving / "swing.yaml", "--accuracy", "1e-6", "--duration", "0.2"], "steps taken", "drift")
+refused([delassus, "simulate", moving / "slide.yaml", "--accuracy", "1e-8"], "contacts, contact friction", "without an accuracy")
+refused([delassus, "simulate", moving / "racket.yaml", "--accuracy", "0"], "--accuracy", "'0'")
+refused([delassus, "simulate", moving / "racket.yaml", "--accuracy", "1e-8", "--integrator", "euler"], "steps of one length", "dormand_prince")
+short = ["--duration", "0.125", "--step", "0.015625", "--halvings", "2", "--no-time"]
+printed([delassus, "accuracy", moving / "racket.yaml", "--simulate", *short], "reference by dormand_prince", "euler, order 1", "runge_kutta, order 4", "dormand_prince, controlled")
+printed([delassus, "accuracy", moving / "slide.yaml", "--simulate", *short, "--solver", "proximal"], "relaxed law", "m, ", "order 1", "which are brought by: contacts, contact friction")
+for words in (["--damping", "1e-4"], ["--steps"], ["--away", "1"], ["--n", "3"], ["--out", "x"]):
+    misspelt([delassus, "accuracy", moving / "racket.yaml", "--simulate", *words], words[0], "--simulate")
+misspelt([delassus, "accuracy", "cassie", "--halvings", "3"], "--simulate")
+refused([delassus, "accuracy", "chain", "--simulate"], "chain", "does not move")
+refused([delassus, "accuracy", moving / "racket.yaml", "--simulate", "--halvings", "13"], "13", "1 to 12")
+refused([delassus, "accuracy", moving / "racket.yaml", "--simulate", "--duration", "0.1", "--step", "0.03"], "--duration", "whole number")
+refused([delassus, "accuracy", moving / "racket.yaml", "--simulate", "--picture", "none/there.svg"], "--picture", "cannot be written")
 refused([delassus, "simulate", hammer, "--step", "0"], "--step", "0")
 refused([delassus, "simulate", hammer, "--solver", "newton"], "newton")
 with tempfile.TemporaryDirectory() as folder:

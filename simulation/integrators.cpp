@@ -3,13 +3,15 @@
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
 #include "algorithms/errors/status.h"
+#include "simulation/runge_kutta.h"
 
 namespace delassus::simulation {
 
 const std::vector<IntegratorRow>& integrators() {
   static const std::vector<IntegratorRow> table{
-      {"euler", "semi-implicit Euler at velocity level, springs and dampers implicit", "Stewart, Trinkle 1996", 1, true},
-      {"runge_kutta", "the classical method on the manifold, explicit", "Munthe-Kaas 1998", 4, false}};
+      {"euler", "semi-implicit Euler at velocity level, springs and dampers implicit", "Stewart, Trinkle 1996", 1, Takes::cones, nullptr, false},
+      {"runge_kutta", "the classical method on the manifold, explicit", "Munthe-Kaas 1998", 4, Takes::equations, &classical(), false},
+      {"dormand_prince", "a pair of orders 5 and 4 on the manifold, explicit: its steps may follow their error", "Dormand, Prince 1980", 5, Takes::equations, &dormand_prince(), true}};
   return table;
 }
 

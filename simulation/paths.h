@@ -23,6 +23,8 @@ struct StepReport {
   Index rows = 0;            ///< rows of this step
   int iterations = 0;        ///< of a solver
   double residual = 0;       ///< of a solver [m/s]
+  int taken = 0, rejected = 0; ///< steps of error control within h
+  double error = 0;            ///< largest of those taken, of a second [m, rad, m/s, rad/s]
   double drift = 0, left = 0;  ///< largest |φ| that the step made, and that closing left [m or rad]
   std::string message;       ///< what is wrong, in words, where it is not ok
   [[nodiscard]] bool ok() const { return report.ok() && message.empty(); }

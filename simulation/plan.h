@@ -24,6 +24,7 @@ struct Settings {
   bool everything = false;                           ///< all effects, also those that provably vanish
   const std::vector<EffectRow>* table = &effects();  ///< another table is another program: the tests of absence
   std::string integrator = "euler";                  ///< a row of integrators()
+  double error = 0;                                  ///< asked of a second of its steps, which follow it [m, rad, m/s, rad/s]; 0: steps of h
   std::string op = "ladder";                         ///< operator of equations
   double accuracy = 1e-10;                           ///< asked of it: relative, in the energy norm
   std::string solver;                                ///< of cones; empty: usual_solvers(), one after another

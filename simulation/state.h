@@ -22,6 +22,7 @@ template <class T> struct State {
   VectorX<T> q;            ///< configuration
   VectorX<T> nu;           ///< velocities at q, floating joints in body axes (docs/conventions.md)
   std::vector<Impulse> impulses;
+  double trial = 0;        ///< the next step that error control tries [s]; 0 without it
 };
 
 /// q ⊕ h ν⁺ and ν⁺ in the axes of the new configuration.

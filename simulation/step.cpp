@@ -1,5 +1,6 @@
 #include "simulation/step.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/errors/message.h"
@@ -8,13 +9,25 @@
 namespace delassus::simulation {
 namespace {
 
-/// Names the effects that bring rows.
-template <class T> [[noreturn]] void refuse_rows(const Scene& scene, const Plan<T>& plan, const IntegratorRow& integrator) {
+/// Rows in cones, by the names of the effects that bring them, and rows that give way: explicit methods take neither.
+template <class T> void check_rows(const Scene& scene, const Plan<T>& plan, const IntegratorRow& integrator) {
   std::string brings;
   for (const PlanLine& line : plan.lines)
-    if (line.in && line.terms.find("rows") != std::string::npos) brings += (brings.empty() ? "" : ", ") + std::string(line.effect->name);
-  throw ModelError(scene.file, "integrator " + std::string(integrator.name), "steps no scene with rows, which are brought by: " + brings,
-                   "euler, or a scene without them; --without leaves an effect out");
+    if (line.in && line.effect->holds == nullptr && line.terms.find("rows") != std::string::npos) brings += (brings.empty() ? "" : ", ") + std::string(line.effect->name);
+  if (!brings.empty() && integrator.takes != Takes::cones)
+    throw ModelError(scene.file, "integrator " + std::string(integrator.name), "steps no scene with rows in cones, which are brought by: " + brings,
+                     "euler, without an accuracy of its steps; or a scene without them: --without leaves an effect out");
+  if (integrator.takes == Takes::cones) return;
+  const auto soft = std::find_if(plan.damping.diagonal.begin(), plan.damping.diagonal.end(), [](double x) { return x != 0; });
+  if (soft != plan.damping.diagonal.end() || !plan.damping.blocks.empty())
+    throw ModelError(scene.file, "integrator " + std::string(integrator.name), "steps hard rows only, and damping is above 0",
+                     "damping: 0 in the scene; or euler, without an accuracy of its steps");
+}
+
+[[noreturn]] void refuse_error(const Scene& scene, const Settings& settings) {
+  if (!(std::isfinite(settings.error) && settings.error > 0))
+    throw ModelError(scene.file, "accuracy", number_text(settings.error) + " a second", "a finite number > 0 [m, rad, m/s, rad/s]");
+  throw ModelError(scene.file, "integrator " + settings.integrator, "has steps of one length, and an accuracy is asked of them", "dormand_prince; or a step, without an accuracy");
 }
 
 }  // namespace
@@ -33,11 +46,18 @@ Simulation<T>::Simulation(const Scene& scene, const Settings& settings)
   now_.force = &force_;
   now_.rows = &rows_;
   const IntegratorRow& integrator = find_integrator(settings.integrator);
-  if (!integrator.rows && (plan_.mechanism->structure()->rows > 0 || !plan_.rows.empty())) refuse_rows(scene, plan_, integrator);
-  if (integrator.order == 1) return;
-  stages_ = std::make_unique<RungeKutta<T>>(plan_.model);
+  check_rows(scene, plan_, integrator);
+  if (settings.error != 0 && !(integrator.controlled && std::isfinite(settings.error) && settings.error > 0)) refuse_error(scene, settings);
+  if (integrator.tableau == nullptr) return;
   now_.h = T(0), now_.weight = T(1);
-  take_ = &Simulation::runge_kutta;
+  if (plan_.mechanism->structure()->rows > 0) constrained_ = std::make_unique<Constrained<T>>(plan_.model, *plan_.mechanism, settings.op, settings.accuracy);
+  if (settings.error > 0) {
+    control_ = std::make_unique<ErrorControl<T>>(plan_.model, *integrator.tableau, settings.error);
+    take_ = &Simulation::controlled;
+  } else {
+    stages_ = std::make_unique<RungeKutta<T>>(plan_.model, *integrator.tableau);
+    take_ = &Simulation::runge_kutta;
+  }
 }
 
 template <class T> void Simulation<T>::restore(const State<T>& state) {
@@ -71,13 +91,54 @@ template <class T> const StepReport& Simulation<T>::euler() {
   return report_;
 }
 
-template <class T> const StepReport& Simulation<T>::runge_kutta() {
-  (*stages_)(T(settings_.step), state_, [&](const State<T>& at, VectorX<T>& acceleration) {
-    now_.state = &at;
-    gather();
-    report_ = plan_.path->velocities(now_, acceleration, impulses_);
+template <class T> bool Simulation<T>::accelerations(const State<T>& at, VectorX<T>& out) {
+  now_.state = &at;
+  gather();
+  if (!constrained_) {
+    report_ = plan_.path->velocities(now_, out, impulses_);
     return report_.ok();
-  });
+  }
+  report_ = {};
+  report_.path = plan_.path->name();
+  report_.rows = plan_.mechanism->structure()->rows;
+  report_.report = constrained_->accelerations(now_, out, impulses_);
+  return report_.ok();
+}
+
+/// Back onto the rows; the state goes on from there.
+template <class T> bool Simulation<T>::end_at(State<T>& next) {
+  if (constrained_) {
+    now_.state = &next;
+    gather();
+    report_.report = constrained_->project(now_, next);
+    report_.drift = now_.drift, report_.left = now_.left;
+    if (!report_.ok()) return false;
+  }
+  ++next.steps;
+  std::swap(state_, next);
+  return true;
+}
+
+template <class T> const StepReport& Simulation<T>::runge_kutta() {
+  stages_->start(state_);
+  if (!stages_->attempt(T(settings_.step), [this](const State<T>& at, VectorX<T>& out) { return accelerations(at, out); })) return report_;
+  next_ = state_;
+  stages_->accept(next_);
+  (void)end_at(next_);
+  return report_;
+}
+
+template <class T> const StepReport& Simulation<T>::controlled() {
+  using End = typename ErrorControl<T>::End;
+  next_ = state_;
+  const End end = (*control_)(T(settings_.step), next_, [this](const State<T>& at, VectorX<T>& out) { return accelerations(at, out); });
+  const auto& spent = control_->spent();
+  report_.taken = spent.taken, report_.rejected = spent.rejected, report_.error = spent.error;
+  if (end == End::reached) (void)end_at(next_);
+  if (end != End::too_short) return report_;
+  report_.report.status = Status::not_converged;
+  report_.message = "an accuracy of " + number_text(settings_.error) + " a second is not reached by steps of " +
+                    number_text(ErrorControl<T>::shortest * settings_.step) + " s: it is within rounding, or the motion is not smooth; a larger one";
   return report_;
 }
 

@@ -13,18 +13,20 @@
 
 #include "simulation/integrators.h"
 #include "simulation/plan.h"
-#include "simulation/runge_kutta.h"
+#include "simulation/constrained.h"
+#include "simulation/error_control.h"
 
 namespace delassus::simulation {
 
 template <class T> class Simulation {
  public:
-  /// At the scene's q and ν. @throws ModelError as Plan; for a step that is not positive and finite.
+  /// At the scene's q and ν. @throws ModelError as Plan; for a step that is not positive and finite, for rows or an accuracy that the
+  /// integrator does not take.
   explicit Simulation(const Scene& scene, const Settings& settings = {});
   Simulation(const Simulation&) = delete;  // its parts point at each other
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step of h. When the report is not ok the state is that before the step.
+  /// One step of h, or as many as its error asks for to get as far. When the report is not ok the state is that before the step.
   [[nodiscard]] const StepReport& step() { return (this->*take_)(); }
 
   [[nodiscard]] const State<T>& state() const { return state_; }
@@ -44,6 +46,9 @@ template <class T> class Simulation {
   void gather();  // numbers and terms at now_.state
   const StepReport& euler();
   const StepReport& runge_kutta();
+  const StepReport& controlled();
+  bool accelerations(const State<T>& at, VectorX<T>& out);
+  bool end_at(State<T>& next);
 
   Settings settings_;
   Plan<T> plan_;
@@ -55,6 +60,8 @@ template <class T> class Simulation {
   Moment<T> now_;
   StepReport report_;
   std::unique_ptr<RungeKutta<T>> stages_;
+  std::unique_ptr<ErrorControl<T>> control_;
+  std::unique_ptr<Constrained<T>> constrained_;
   const StepReport& (Simulation::*take_)() = &Simulation::euler;
 };
 
