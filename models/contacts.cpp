@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "models/box_contacts.h"
+#include "models/capsule_box.h"
 
 namespace delassus {
 namespace {
@@ -170,14 +171,15 @@ std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const 
   if (box_a && box_b) return box_box(A, B, margin);
   if (!box_a && !box_b) return round_round(a, b, shift);
   const Placed& round = box_a ? b : a;
-  const V3 centre = round.pose.translation + (box_a ? shift : V3::Zero()), h = half_axis(round);
+  const V3 centre = round.pose.translation + (box_a ? shift : V3::Zero());
+  const PlacedBox& box = box_a ? A : B;
   std::vector<ShapeContact> out;
-  for (const double s : {-1.0, 1.0}) {
-    if (s > 0 && round.shape->kind == Shape::Kind::sphere) break;
-    ShapeContact c = sphere_box(centre + s * h, round.shape->size[0], box_a ? A : B);
-    if (box_a) c.normal = -c.normal;
-    out.push_back(c);
-  }
+  if (round.shape->kind == Shape::Kind::sphere)
+    out.push_back(sphere_box(centre, round.shape->size[0], box));
+  else
+    out = capsule_box(centre, half_axis(round), round.shape->size[0], box, margin);
+  if (box_a)
+    for (ShapeContact& c : out) c.normal = -c.normal;
   return out;
 }
 

@@ -4,7 +4,7 @@
 //   ground   sphere: lowest point · box: vertices · capsule: lowest point of each end · cylinder: up to 4 rim points
 //            hull (of a mesh): vertices, of more than 4 those that reach farthest on the plane
 //   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
-//            edges), capsule–box by its two end spheres, capsule–capsule at the closest points
+//            edges), capsule–box at ends, edges and the deepest place, capsule–capsule at the closest points
 // Pairs that involve a cylinder or a hull and pairs of links of one robot are not tested; notes count the former.
 #pragma once
 

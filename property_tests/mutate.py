@@ -49,7 +49,7 @@ FILES = {
 
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
-    **dict.fromkeys(["box_contacts.cpp", "contacts.cpp"], "BoxContacts ContactLaws HullContacts ZeroSize SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp"], "BoxContacts CapsuleBox ContactLaws HullContacts ZeroSize SceneLaws SceneFile Scenes"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
                     "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
     **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
