@@ -191,6 +191,9 @@ bool damped(const Case& c) {
 template <> const MatrixX<Quad>& definition<double>(Function f, const Case& c) { return quad_definition(f, c); }
 template <> const MatrixX<Rational>& definition<Rational>(Function f, const Case& c) { return exact_definition(f, c); }
 
+/// The row says of a solve without apply that it, too, is a sum of mobilities.
+bool by_mobilities(const OperatorRow& op) { return !op.applies && op.apply_error == ErrorClass::amplified && op.solve_error == ErrorClass::amplified; }
+
 MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, const MatrixX<double>& x, Data data) {
   const reference::Sensitivity& s = *sensitivity(c);
   MatrixX<Quad> bound(x.rows(), x.cols());
@@ -211,6 +214,7 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
       }
       if (op.solve_error == ErrorClass::normwise) b = s.solve_normwise(a, lambda);
       if (op.solve_error == ErrorClass::amplified) b += s.solve_amplified(a);
+      if (by_mobilities(op)) b += s.solve_mobile(a);
     }
     // Of second order: where products cancel to a bound that is zero but for Quad's rounding, eps² of the others is met.
     const double second = b.size() == 0 ? 0 : unit_roundoff<double> * b.maxCoeff();
@@ -225,7 +229,7 @@ std::string_view bound_name(Function f, const OperatorRow& op, Data data) {
     case ErrorClass::componentwise: return "solve_sensitivity";
     case ErrorClass::normwise: return "solve_normwise";
     case ErrorClass::refined: return data == Data::given ? "solve_refined" : "solve_refined + solve_sensitivity";
-    case ErrorClass::amplified: return "solve_amplified + solve_sensitivity";
+    case ErrorClass::amplified: return by_mobilities(op) ? "solve_mobile + solve_amplified + solve_sensitivity" : "solve_amplified + solve_sensitivity";
   }
   return "solve_sensitivity";
 }

@@ -129,18 +129,19 @@ double reach(const Structure& s, const std::vector<Matrix6<double>>& omega, Inde
 }
 
 /// ω of apply_mobile. Shape m. Cost n³, and n² per body.
-Vector reaches(const Problem<Quad>& p, const MatrixX<Quad>& M_inverse) {
+Vector reaches(const Problem<Quad>& p, const MatrixX<Quad>& M_inverse, const Matrix& C) {
   const Structure& s = *p.structure;
   const auto magnitude = [](const auto& x) { return x.unaryExpr([](const Quad& v) { return std::fabs(static_cast<double>(v)); }).eval(); };
   std::vector<Matrix6<double>> omega;
   std::vector<MatrixX<Quad>> D_inverse_Ut(static_cast<std::size_t>(s.bodies())), D_inverse = D_inverse_Ut;
   std::vector<Matrix6<Quad>> inertia = p.H;  // articulated
+  const Matrix in_basis = C * magnitude(M_inverse) * C.transpose();
   for (Index i = 0; i < s.bodies(); ++i) {
     const std::vector<Index> path = path_dofs(s, i);
-    Matrix6<Quad> mobility = Matrix6<Quad>::Zero();
+    Matrix6<double> mobility = Matrix6<double>::Zero();
     for (const Index k : path)
-      for (const Index l : path) mobility += p.S[k] * M_inverse(k, l) * p.S[l].transpose();
-    omega.push_back(magnitude(mobility));
+      for (const Index l : path) mobility += magnitude(p.S[k]) * in_basis(k, l) * magnitude(p.S[l]).transpose();
+    omega.push_back(mobility);
   }
   for (Index i = s.bodies(); i-- > 0;) {
     const Index first = s.first_dof[i], n = s.dofs(i);
@@ -255,8 +256,15 @@ VectorX<double> Sensitivity::apply_sensitivity(const VectorX<double>& x) const {
 
 VectorX<double> Sensitivity::apply_mobile(const VectorX<double>& x) const {
   require(x.size() == rows(), "Sensitivity: wrong number of rows");
-  if (!data_->omega) data_->omega = reaches(data_->problem, PivotedLdlt<Quad>(data_->dense.M).inverse());
+  if (!data_->omega) data_->omega = reaches(data_->problem, PivotedLdlt<Quad>(data_->dense.M).inverse(), data_->C);
   return *data_->omega * data_->omega->dot(x.cwiseAbs());
+}
+
+VectorX<double> Sensitivity::solve_mobile(const VectorX<double>& a) const {
+  require(a.size() == rows(), "Sensitivity: wrong number of rows");
+  data_->require_regular();
+  const Matrix& R = data_->direct_formula().R_abs;
+  return R * apply_mobile(R * a.cwiseAbs());
 }
 
 VectorX<Quad> Sensitivity::solve(const VectorX<double>& a) const {

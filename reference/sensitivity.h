@@ -15,8 +15,8 @@
 //          couplings of two branches to the joint between them happen to cancel exactly, which rounding does not see.
 // mobile   A_rs = Σ κ_r Ω κ_s over pairs of bodies, each mobility Ω_l = G_l M⁻¹G_lᵀ (G_l: S on the path of l) on its own. What bodies of
 //          one row have in common is not there in J, but cancels here, and so does what a joint lets go in Ω_l − Pᵀ… of large numbers:
-//            apply_mobile(x)_r = ω_r Σ_s ω_s |x_s|,   ω_r = Σ_{i∈r} max_{l on the path of i} √( |κ_r^i|ᵀ |Ω_l| |κ_r^i| ),
-//          κ = K; of a row 𝒦 on joint i, κ = 𝒦 D⁻¹U_iᵀ on π(i), and √(|𝒦||D⁻¹||𝒦|) beside it, with the articulated inertia of i.
+//            apply_mobile(x)_r = ω_r Σ_s ω_s |x_s|,   ω_r = Σ_{i∈r} max_{l on the path of i} √( |κ_r^i|ᵀ |Ω|_l |κ_r^i| ),
+//          |Ω|_l = |G_l| C|M⁻¹|Cᵀ |G_l|ᵀ, κ = K; of a row 𝒦 on joint i, κ = 𝒦 D⁻¹U_iᵀ on π(i), and √(|𝒦||D⁻¹||𝒦|) beside it, with the articulated inertia of i.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
@@ -27,6 +27,7 @@
 //          Where R⁻¹ is singular the size of a correction is the only sign of the error: it ends when one is below 4 ε
 //          itself, and the energy norm bounds no row, hence
 //            solve_refined(a, λ) = max|λ| + ε solve_sensitivity(a, λ).
+// mobile   of Λ_R = R − R J M_R⁻¹Jᵀ R, the mobilities of M_R below those of M:  solve_mobile(a) = |R| apply_mobile(|R||a|).
 // direct   the inversion-lemma formula λ = R a − R J ν with ν = M_R⁻¹ Jᵀ R a, M_R = M + Jᵀ R J, evaluated as it stands.
 //          Errors: of R a and of the difference, |R||a|; of J ν, J_abs|ν|; of ν, from M_R δν = δ(JᵀRa) − δM_R ν:
 //            solve_amplified(a) = |R| ( |a| + J_abs|ν|
@@ -75,6 +76,8 @@ class Sensitivity {
   /// Bound on the error of the direct inversion-lemma formula. Needs R⁻¹ > 0, not A⁻¹. @throws std::runtime_error when
   /// a row or a block of R⁻¹ is singular. The first call costs n² m + n³ in Quad.
   [[nodiscard]] VectorX<double> solve_amplified(const VectorX<double>& a) const;
+  /// What is added where Λ_R is formed by mobilities of bodies. Shapes m. Needs R⁻¹ > 0. Cost as apply_mobile and solve_amplified.
+  [[nodiscard]] VectorX<double> solve_mobile(const VectorX<double>& a) const;
   /// κ_∞(A) = ‖A‖ ‖A⁻¹‖.
   [[nodiscard]] double condition() const;
   /// The matrices the bounds are made of.

@@ -137,7 +137,8 @@ const std::vector<OperatorRow>& operators() {
       {.name = "caba_osimr", .summary = "the same on the tree contracted to branchings, loaded bodies and coupled joints",
        .formula = "Λ_R = R − R (Σ_i G_i D_i⁻¹ G_iᵀ) R, factor of M + Jᵀ R J", .source = "Sathya and Carpentier 2025; loops: algorithms/factors/row_propagation.h",
        .cost = "O(n + m²) with local loops", .applies = false, .solves = true, .zero_damping = false,
-       .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsimR>()},
+       .terminates_exactly = true, .apply_error = ErrorClass::amplified,  // of its mobilities
+        .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsimR>()},
       {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate",
        .formula = "M_R δν = r₁ + Jᵀ R r₂, δλ = R (r₂ − J δν)", .source = "paper, Algorithm 4; refinement: algorithms/operators/lcaba_refined.h",
        .cost = "O(n + m) with local loops", .applies = false, .solves = true, .zero_damping = false,
