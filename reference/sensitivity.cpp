@@ -121,49 +121,64 @@ Matrix growth_of_bases(const Structure& s, MatrixX<Quad> M) {
   return C;
 }
 
-/// √(|κ|ᵀ |Ω_l| |κ|), the largest over the bodies l on the path of i. Shapes: omega 6 × 6 per body.
-double reach(const Structure& s, const std::vector<Matrix6<double>>& omega, Index i, const Vector6<double>& kappa) {
+template <class X> auto magnitude(const X& x) {
+  return x.unaryExpr([](const Quad& v) { return std::fabs(static_cast<double>(v)); }).eval();
+}
+
+/// What is known of a body on the way of forces inwards.
+struct OnTheWay {
+  Matrix6<double> mobility;         ///< |Ω|
+  MatrixX<Quad> S, D_inverse_Ut;    ///< 6 × n_i, n_i × 6
+};
+
+/// √(yᵀ |Ω|_l y), the largest over the bodies l on the path of i: κ is carried in exactly, P κ = κ − U D⁻¹Sᵀκ, and the last step to l is
+/// made in magnitudes, y = |κ| + |U D⁻¹||Sᵀ||κ|: what rounds is each of its terms, and of P Ω P'.
+double reach(const Structure& s, const std::vector<OnTheWay>& way, Index i, Vector6<Quad> kappa) {
+  Vector6<double> y = magnitude(kappa);
   double largest = 0;
-  for (Index l = i; l != ground; l = s.parent[l]) largest = std::max(largest, kappa.dot(omega[l] * kappa));
+  for (Index l = i; l != ground; l = s.parent[l]) {
+    largest = std::max(largest, y.dot(way[l].mobility * y));
+    y = magnitude(kappa) + magnitude(way[l].D_inverse_Ut).transpose() * (magnitude(way[l].S).transpose() * magnitude(kappa));
+    kappa -= way[l].D_inverse_Ut.transpose() * (way[l].S.transpose() * kappa);
+  }
   return std::sqrt(largest);
 }
 
 /// ω of apply_mobile. Shape m. Cost n³, and n² per body.
 Vector reaches(const Problem<Quad>& p, const MatrixX<Quad>& M_inverse, const Matrix& C) {
   const Structure& s = *p.structure;
-  const auto magnitude = [](const auto& x) { return x.unaryExpr([](const Quad& v) { return std::fabs(static_cast<double>(v)); }).eval(); };
-  std::vector<Matrix6<double>> omega;
-  std::vector<MatrixX<Quad>> D_inverse_Ut(static_cast<std::size_t>(s.bodies())), D_inverse = D_inverse_Ut;
+  std::vector<OnTheWay> way(static_cast<std::size_t>(s.bodies()));
+  std::vector<MatrixX<Quad>> D_inverse(way.size());
   std::vector<Matrix6<Quad>> inertia = p.H;  // articulated
   const Matrix in_basis = C * magnitude(M_inverse) * C.transpose();
   for (Index i = 0; i < s.bodies(); ++i) {
     const std::vector<Index> path = path_dofs(s, i);
-    Matrix6<double> mobility = Matrix6<double>::Zero();
+    way[i].mobility.setZero();
     for (const Index k : path)
-      for (const Index l : path) mobility += magnitude(p.S[k]) * in_basis(k, l) * magnitude(p.S[l]).transpose();
-    omega.push_back(mobility);
+      for (const Index l : path) way[i].mobility += magnitude(p.S[k]) * in_basis(k, l) * magnitude(p.S[l]).transpose();
   }
   for (Index i = s.bodies(); i-- > 0;) {
     const Index first = s.first_dof[i], n = s.dofs(i);
-    MatrixX<Quad> S(6, n), D(n, n);
+    MatrixX<Quad>& S = way[i].S;
+    S.resize(6, n);
     for (Index k = 0; k < n; ++k) S.col(k) = p.S[first + k];
     const MatrixX<Quad> U = inertia[i] * S;
-    D = S.transpose() * U;
+    MatrixX<Quad> D = S.transpose() * U;
     for (Index k = 0; k < n; ++k) D(k, k) += p.armature[first + k];
     D_inverse[i] = PivotedLdlt<Quad>(D).inverse();
-    D_inverse_Ut[i] = D_inverse[i] * U.transpose();
-    if (s.parent[i] != ground) inertia[s.parent[i]] += inertia[i] - U * D_inverse_Ut[i];
+    way[i].D_inverse_Ut = D_inverse[i] * U.transpose();
+    if (s.parent[i] != ground) inertia[s.parent[i]] += inertia[i] - U * way[i].D_inverse_Ut;
   }
   Vector w = Vector::Zero(s.rows);
   for (const auto& e : s.link_constraints)
     for (const auto& link : e.links)
-      for (Index r = 0; r < e.rows; ++r) w[e.row + r] += reach(s, omega, link.body, magnitude(p.K[link.first + r]));
+      for (Index r = 0; r < e.rows; ++r) w[e.row + r] += reach(s, way, link.body, p.K[link.first + r]);
   for (const auto& j : s.joint_constraints)
     for (Index r = 0; r < j.rows; ++r) {
       const VectorX<Quad> k = Eigen::Map<const VectorX<Quad>>(p.joint_K.data() + j.first + r * s.dofs(j.body), s.dofs(j.body));
       const Vector own = magnitude(k);
       w[j.row + r] = std::sqrt(own.dot(magnitude(D_inverse[j.body]) * own));
-      if (s.parent[j.body] != ground) w[j.row + r] += reach(s, omega, s.parent[j.body], magnitude(Vector6<Quad>(D_inverse_Ut[j.body].transpose() * k)));
+      if (s.parent[j.body] != ground) w[j.row + r] += reach(s, way, s.parent[j.body], Vector6<Quad>(way[j.body].D_inverse_Ut.transpose() * k));
     }
   return w;
 }

@@ -15,8 +15,8 @@
 //          couplings of two branches to the joint between them happen to cancel exactly, which rounding does not see.
 // mobile   A_rs = Σ κ_r Ω κ_s over pairs of bodies, each mobility Ω_l = G_l M⁻¹G_lᵀ (G_l: S on the path of l) on its own. What bodies of
 //          one row have in common is not there in J, but cancels here, and so does what a joint lets go in Ω_l − Pᵀ… of large numbers:
-//            apply_mobile(x)_r = ω_r Σ_s ω_s |x_s|,   ω_r = Σ_{i∈r} max_{l on the path of i} √( |κ_r^i|ᵀ |Ω|_l |κ_r^i| ),
-//          |Ω|_l = |G_l| C|M⁻¹|Cᵀ |G_l|ᵀ, κ = K; of a row 𝒦 on joint i, κ = 𝒦 D⁻¹U_iᵀ on π(i), and √(|𝒦||D⁻¹||𝒦|) beside it, with the articulated inertia of i.
+//            apply_mobile(x)_r = ω_r Σ_s ω_s |x_s|,   ω_r = Σ_{i∈r} max_{l on the path of i} √( yᵀ|Ω|_l y ),
+//          |Ω|_l = |G_l| C|M⁻¹|Cᵀ |G_l|ᵀ; y = (1 + |U D⁻¹||Sᵀ|)|κ|, κ carried in exactly to the body before l, from K; of a row 𝒦 on joint i, κ = 𝒦 D⁻¹U_iᵀ on π(i), and √(|𝒦||D⁻¹||𝒦|) beside it, with the articulated inertia of i.
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
