@@ -213,6 +213,7 @@ MatrixX<Quad> error_bound(Function f, const OperatorRow& op, const Case& c, cons
         b += s.solve_refined(a, lambda);
       }
       if (op.solve_error == ErrorClass::normwise) b = s.solve_normwise(a, lambda);
+      if (op.solve_error == ErrorClass::normwise && op.apply_error == ErrorClass::amplified) b += s.solve_normwise_mobile(lambda);
       if (op.solve_error == ErrorClass::amplified) b += s.solve_amplified(a);
       if (by_mobilities(op)) b += s.solve_mobile(a);
     }
@@ -227,7 +228,7 @@ std::string_view bound_name(Function f, const OperatorRow& op, Data data) {
   if (f == Function::apply) return op.apply_error == ErrorClass::amplified ? "apply_mobile + apply_sensitivity" : "apply_sensitivity";
   switch (op.solve_error) {
     case ErrorClass::componentwise: return "solve_sensitivity";
-    case ErrorClass::normwise: return "solve_normwise";
+    case ErrorClass::normwise: return op.apply_error == ErrorClass::amplified ? "solve_normwise_mobile + solve_normwise" : "solve_normwise";
     case ErrorClass::refined: return data == Data::given ? "solve_refined" : "solve_refined + solve_sensitivity";
     case ErrorClass::amplified: return by_mobilities(op) ? "solve_mobile + solve_amplified + solve_sensitivity" : "solve_amplified + solve_sensitivity";
   }

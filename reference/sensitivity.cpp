@@ -301,6 +301,12 @@ VectorX<double> Sensitivity::solve_normwise(const VectorX<double>& a, const Vect
   return Vector::Constant(rows(), norm(data_->A_inverse_abs) * residual);
 }
 
+VectorX<double> Sensitivity::solve_normwise_mobile(const VectorX<double>& lambda) const {
+  require(lambda.size() == rows(), "Sensitivity: wrong number of rows");
+  data_->require_regular();
+  return VectorX<double>::Constant(rows(), norm(data_->A_inverse_abs) * norm(apply_mobile(lambda)));
+}
+
 VectorX<double> Sensitivity::solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const {
   const Vector sensitivity = solve_sensitivity(a, lambda), least = Vector::Constant(rows(), norm(lambda));
   if (!PivotedLdlt<Quad>(data_->dense.R_inverse).regular()) return unit_roundoff<double> * sensitivity + least;

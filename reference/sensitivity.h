@@ -20,7 +20,8 @@
 // solve    A λ = a gives δλ = A⁻¹ (δa − δA λ), hence
 //            solve_sensitivity(a, λ) = |A⁻¹| ( apply_sensitivity(λ) + |a| ).
 // normwise an explicit A factored by a method that is backward stable in norm only, ‖δA‖ ≤ ε‖A‖:
-//            solve_normwise(a, λ) = ‖A⁻¹‖ ( ‖A‖ ‖λ‖ + ‖apply_sensitivity(λ)‖ + ‖a‖ ),  ∞-norms, the same on every row.
+//            solve_normwise(a, λ) = ‖A⁻¹‖ ( ‖A‖ ‖λ‖ + ‖apply_sensitivity(λ)‖ + ‖a‖ ),  ∞-norms, the same on every row;
+//          of an A formed by mobilities also  solve_normwise_mobile(λ) = ‖A⁻¹‖ ‖apply_mobile(λ)‖.
 // refined  refinement of the numbers as given, with residuals in twice the digits, ends when the correction is below ε of the
 //          largest force and below ε in the energy norm ‖ν‖²_M + ‖λ‖²_{R⁻¹} = λᵀa, in which |λ_r| ≤ √R_rr ‖·‖:
 //            solve_refined(a, λ) = min( max|λ|, √R_rr √(λᵀa) ) + ε solve_sensitivity(a, λ).
@@ -71,6 +72,8 @@ class Sensitivity {
   [[nodiscard]] VectorX<double> solve_sensitivity(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of λ in the sense of norms. Shapes m, all entries equal.
   [[nodiscard]] VectorX<double> solve_normwise(const VectorX<double>& a, const VectorX<double>& lambda) const;
+  /// What is added where that A is formed by mobilities of bodies. Shapes m, all entries equal.
+  [[nodiscard]] VectorX<double> solve_normwise_mobile(const VectorX<double>& lambda) const;
   /// Bound on the error of a refined solution in double. Shapes m.
   [[nodiscard]] VectorX<double> solve_refined(const VectorX<double>& a, const VectorX<double>& lambda) const;
   /// Bound on the error of the direct inversion-lemma formula. Needs R⁻¹ > 0, not A⁻¹. @throws std::runtime_error when
