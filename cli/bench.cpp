@@ -19,7 +19,7 @@ struct Options {
   std::vector<std::string> scenes, ops;
   std::string baseline;
   double budget = 0.02, slack = 1.5;
-  bool as_json = false, table1 = false, swimmers = false, solvers = false;
+  bool as_json = false, table1 = false, swimmers = false, solvers = false, choose = false, calibrate = false;
   std::vector<std::string> compared;
   std::string from, probe, pictures;
   std::int64_t largest = 100000;
@@ -112,6 +112,7 @@ int run_bench(const Options& o) {
     s.from = o.from, s.pictures = o.pictures, s.as_json = o.as_json;
     return run_solvers(s);
   }
+  if (o.choose || o.calibrate) return run_choose({o.scenes, o.ops, o.budget, o.calibrate});
   json baseline;
   if (!o.baseline.empty()) baseline = read_baseline(o.baseline);
   json out = {{"units", {{"time", "µs per call"}, {"memory", "bytes"}}}, {"scenes", json::array()}};
@@ -143,6 +144,9 @@ void add_bench(options::Command& app, Run& run) {
   c->add_option("--seeds", o->of_solvers.seeds, "generated problems of each kind")->check(options::whole(1))->needs(solvers)->capture_default_str();
   c->add_option("--iterations", o->of_solvers.iterations, "that a solver has at most")->check(options::whole(1))->needs(solvers)->capture_default_str();
   c->add_option("--from", o->from, "print what --table1, --swimmers or --solvers wrote with --json instead of measuring");
+  options::Option* choose = c->add_flag("--choose", o->choose, "1, 10 and 1000 answers at one configuration: the row that choose() names (algorithms/operators/choose.h) against the fastest, and from how many on explicit ones win; exit code 3 beyond 1.1");
+  choose->excludes(table1)->excludes(swimmers);
+  c->add_flag("--calibrate", o->calibrate, "print algorithms/operators/kernel_costs.cpp, what choose() counts with, as measured here; how well it fits to standard error")->excludes(table1)->excludes(swimmers)->excludes(choose);
   c->add_option("--largest", o->largest, "links of the longest swimmer")->check(options::whole(3))->needs(swimmers)->capture_default_str();
   c->add_option("--longest", o->longest, "an operator is left out where one of its phases would take longer [s]")->check(options::above(0, "s"))->needs(swimmers)->capture_default_str();
   c->add_option("--memory", o->gigabytes, "or it would hold more [GB]")->check(options::above(0, "GB"))->needs(swimmers)->capture_default_str();

@@ -6,6 +6,7 @@
 
 #include "bench/compare.h"
 #include "bench/figure2.h"
+#include "bench/phase_times.h"
 #include "bench/report.h"
 #include "bench/solver_profile.h"
 #include "bench/table1.h"
@@ -13,6 +14,8 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/interrupt.h"
+#include "generators/build.h"
+#include "generators/families.h"
 
 namespace delassus::cli {
 
@@ -90,6 +93,42 @@ int run_solvers(const SolversOptions& o) {
         std::ofstream(std::filesystem::path(o.pictures) / bench::format("solvers_%s_%.0e_%s.svg", set.c_str(), bench::wanted_residuals[k], by == bench::Measure::time ? "time" : "iterations"))
             << bench::solver_picture(p, set, k, by);
   return o.from.empty() ? end_of_run(good, "problems are missing") : good;
+}
+
+namespace {
+/// Swimmers and families beside the scenes, so that few bodies with many rows and many with few have their part.
+std::vector<bench::ChoiceRow> calibration(const std::vector<const OperatorRow*>& rows, double budget) {
+  std::vector<bench::ChoiceRow> out;
+  const auto add = [&](const std::string& name, const Problem<double>& problem) {
+    const Index m = problem.structure->rows;
+    if (m == 0 || m > 300 || interrupted()) return;
+    out.push_back(bench::measure_choice(name, problem, Damping<double>::uniform(m, 1e-4), rows, budget));
+  };
+  for (const int links : {5, 8, 12, 20, 30, 50, 80, 120, 200, 300})
+    add("swimmer:" + std::to_string(links), problem_of(open_scene("swimmer:" + std::to_string(links))));
+  for (const generators::FamilyRow& family : generators::families())
+    for (const Index n : {8, 16, 32, 64}) add(std::string(family.name) + ":" + std::to_string(n), generators::build(family.make(n, 1)).problem);
+  return out;
+}
+}  // namespace
+
+int run_choose(const ChooseOptions& o) {
+  keep_on_interrupt();
+  const std::vector<const OperatorRow*> rows = o.calibrate ? bench::calibrated_rows() : chosen_operators(o.ops);
+  std::vector<bench::ChoiceRow> measured = o.calibrate ? calibration(rows, o.budget) : std::vector<bench::ChoiceRow>{};
+  for (const std::string& name : o.scenes.empty() ? scene_names() : o.scenes) {
+    if (interrupted()) break;
+    const Scene scene = open(name, {});
+    const Problem<double> problem = problem_of(scene);
+    if (problem.structure->rows == 0) continue;
+    say(name);
+    measured.push_back(bench::measure_choice(name, problem, scene.damping, rows, o.budget));
+    measured.back().weight = 8;
+  }
+  std::printf("%s", (o.calibrate ? bench::calibrated(measured) : bench::choices_text(measured)).c_str());
+  if (o.calibrate) say(bench::predictions_text(measured));
+  const int code = !o.calibrate && bench::worst_ratio(measured) > bench::promised_ratio ? slower : good;
+  return end_of_run(code, "scenes are missing");
 }
 
 int run_compare(const std::vector<std::string>& files, double slack, bool as_json) {

@@ -1,4 +1,4 @@
-// `delassus bench --table1`, `--swimmers`, `--solvers` and `--compare`: results measured, or printed from files of results.
+// `delassus bench --table1`, `--swimmers`, `--solvers`, `--choose` and `--compare`: results measured, or printed from files of results.
 #pragma once
 
 #include <string>
@@ -25,11 +25,17 @@ struct SolversOptions {
   std::int64_t seeds = 2, iterations = 10000;
   bool as_json = false;
 };
+struct ChooseOptions {
+  std::vector<std::string> scenes, ops;
+  double budget = 0.02;
+  bool calibrate = false;   ///< print the table of kernels instead
+};
 
 // They return the exit code.
 [[nodiscard]] int run_table1(const Table1Options& o);
 [[nodiscard]] int run_swimmers(const SwimmersOptions& o);
 [[nodiscard]] int run_solvers(const SolversOptions& o);
+[[nodiscard]] int run_choose(const ChooseOptions& o);
 [[nodiscard]] int run_compare(const std::vector<std::string>& files, double slack, bool as_json);
 
 }  // namespace delassus::cli

@@ -40,6 +40,7 @@ FILES = {
     "ldlt.h": "dense_cholesky lcaba", "explicit.cpp": "dense_cholesky explicit_columns", **dict.fromkeys(["ltl.cpp", "branch_factor.cpp", "branch_rows.cpp", "branch_rows.h"], "ltl_osim ltl_kkt"), "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
+    "choose.cpp": "Choose", "auto.cpp": "Auto",
     "pair_sums.h": "pv_osim pv_osimr kjr", "thin_product.h": "ltl_osim pv_osimr", "mobility.h": "pv_osimr kjr efp efpa", "pv_osim.h": "pv_osim pv_osimr",
     **dict.fromkeys(["row_plan.cpp", "row_plan.h", "row_propagation.cpp"], "pv_osim pv_osimr caba_osim caba_osimr"), "caba_osim.cpp": "caba_osim caba_osimr",
     **dict.fromkeys(["mobility_form.cpp", "mobility_form.h"], "kjr efp efpa"),
@@ -63,7 +64,7 @@ WAY_IN = {
     "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}
 FILES.update(WAY_IN)
 for source in sorted(os.listdir(os.path.join(ROOT, "algorithms", "operators"))):  # the rest: a file is called as the operator it is
-    if source.endswith(".cpp") and source != "operators.cpp":
+    if source.endswith(".cpp") and source not in ("operators.cpp", "kernel_costs.cpp"):
         FILES.setdefault(source, source[:-len(".cpp")])
 
 
