@@ -71,7 +71,8 @@ Frame3D frame_of(const Scene& scene, const simulation::Simulation<double>& s, co
   for (const auto& c : s.rows()) {
     if (c.kind == simulation::RowSet<double>::Kind::contact && s.impulses()[row] > 0) {
       Vector3<double> f = Vector3<double>::Zero();
-      for (Index k = 0; k < c.directions; ++k) f += s.impulses()[row + k] / s.settings().step * c.axes.col(k);
+      for (Index k = 0; k < c.directions; ++k)
+        if (!c.row(k).spins) f += s.impulses()[row + k] / s.settings().step * c.axes.col(c.row(k).axis);
       const Vector3<double> x = at.reference[static_cast<std::size_t>(at.tree[static_cast<std::size_t>(c.body)])] + c.point;
       out.forces.insert(out.forces.end(), {x[0], x[1], x[2], f[0], f[1], f[2]});
     }

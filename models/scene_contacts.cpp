@@ -41,6 +41,8 @@ void SceneLoader::detect(const Yaml* y) {
     scene_.motion.restitution = y->at("restitution").non_negative("");
     if (scene_.motion.restitution > 1) y->at("restitution").fail(number_text(scene_.motion.restitution) + " is above 1", "a number from 0 to 1; 1 bounces back with the speed it came");
   }
+  if (y != nullptr && y->has("torsional_friction")) scene_.motion.torsional_friction = y->at("torsional_friction").non_negative(" [m]");
+  if (y != nullptr && y->has("rolling_friction")) scene_.motion.rolling_friction = y->at("rolling_friction").non_negative(" [m]");
   Index vertices = 64;
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
     y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
@@ -66,11 +68,11 @@ void SceneLoader::detect(const Yaml* y) {
 }
 
 void SceneLoader::read_contacts(const Yaml& y) {
-  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
+  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, torsional_friction, rolling_friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
   if (y.is_list()) {
     for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
   } else if (y.is_map()) {
-    y.keys({"detect", "margin", "hull_vertices", "friction", "restitution", "damping"});
+    y.keys({"detect", "margin", "hull_vertices", "friction", "torsional_friction", "rolling_friction", "restitution", "damping"});
     if (y.at("detect").boolean()) detect(&y);
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);

@@ -40,6 +40,7 @@ struct SceneMotion {
   ContactSearch search;             ///< margin, ground, which bodies belong together
   double friction = -1;             ///< of all contacts that are found; negative: that of shapes and ground
   double restitution = 0;           ///< of all contacts
+  double torsional_friction = 0, rolling_friction = 0;  ///< of all contacts: largest moment about the normal, and across it, per normal force [m]
   double contact_damping = 0;       ///< R⁻¹ of the rows of contacts that are found [1/kg]
   std::map<std::string, std::string> where;  ///< key of the scene → file:line
 

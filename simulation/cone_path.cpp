@@ -23,7 +23,12 @@ template <class T> void in_double(const Problem<T>& from, Problem<double>& to) {
   all(from.S, to.S), all(from.armature, to.armature), all(from.H, to.H), all(from.K, to.K), all(from.joint_K, to.joint_K);
 }
 
-constexpr Index of_equations = 3;  // the first entry of their identity
+constexpr Index of_equations = 3, of_more_rows = 4;  // the first entry of their identity
+
+/// Impulses are kept by threes: who the first three rows of a set are, and the others.
+template <class T> Identity identity_of(const RowSet<T>& s, Index k) {
+  return k == 0 ? s.identity : Identity{of_more_rows, s.identity[1], s.identity[2], s.identity[3]};
+}
 
 }  // namespace
 
@@ -89,9 +94,15 @@ template <class T> void ConePath<T>::fill(const Moment<T>& now) {
     if (s.kind == RowSet<T>::Kind::contact) {
       const auto& links = structure_->link_constraints[link++].links;
       for (Index k = 0; k < s.directions; ++k) {
-        const Vector3<T> d = s.axes.col(k);
-        numbers_.K[links[0].first + k] << s.point.cross(d), d;
-        if (s.other != ground) numbers_.K[links[1].first + k] << -s.point_of_other.cross(d), -d;
+        const auto of = s.row(k);
+        const Vector3<T> d = s.axes.col(of.axis);
+        if (of.spins) {
+          numbers_.K[links[0].first + k] << of.arm * d, Vector3<T>::Constant(T(0));
+          if (s.other != ground) numbers_.K[links[1].first + k] << -of.arm * d, Vector3<T>::Constant(T(0));
+        } else {
+          numbers_.K[links[0].first + k] << s.point.cross(d), d;
+          if (s.other != ground) numbers_.K[links[1].first + k] << -s.point_of_other.cross(d), -d;
+        }
         problem_.R_inverse[r + static_cast<std::size_t>(k)] = static_cast<double>(s.R_inverse);
         if (k > 0) problem_.friction[r + static_cast<std::size_t>(k)] = static_cast<double>(s.coefficient);
       }
@@ -117,7 +128,10 @@ template <class T> void ConePath<T>::start_warm(const Moment<T>& now) {
   };
   Index row = base_->rows;
   for (Index r = 0; r < row; ++r) take({of_equations, r, 0, 0}, r, 1);
-  for (const RowSet<T>& s : *now.rows) take(s.identity, row, s.directions), row += s.directions;
+  for (const RowSet<T>& s : *now.rows) {
+    for (Index k = 0; k < s.directions; k += 3) take(identity_of(s, k), row + k, std::min<Index>(3, s.directions - k));
+    row += s.directions;
+  }
 }
 
 template <class T> StepReport ConePath<T>::solve() {
@@ -179,9 +193,11 @@ template <class T> void ConePath<T>::remember(const Moment<T>& now, State<T>& ne
   const auto value = [&](Index r) { return T(lambda_[r]); };
   Index row = base_->rows;
   for (const RowSet<T>& s : *now.rows) {
-    typename State<T>::Impulse i{s.identity, {T(0), T(0), T(0)}};
-    for (Index k = 0; k < s.directions; ++k) i.value[static_cast<std::size_t>(k)] = value(row + k);
-    next.impulses.push_back(i);
+    for (Index first = 0; first < s.directions; first += 3) {
+      typename State<T>::Impulse i{identity_of(s, first), {T(0), T(0), T(0)}};
+      for (Index k = 0; k < std::min<Index>(3, s.directions - first); ++k) i.value[static_cast<std::size_t>(k)] = value(row + first + k);
+      next.impulses.push_back(i);
+    }
     row += s.directions;
   }
   for (Index r = 0; r < base_->rows; ++r) next.impulses.push_back({{of_equations, r, 0, 0}, {value(r), T(0), T(0)}});

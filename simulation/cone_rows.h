@@ -14,13 +14,29 @@ template <class T> struct RowSet {
   int side = 1;                         ///< limit: row side · ν_dof
   Vector3<T> point, point_of_other;     ///< the contact's point from the reference points of either tree [m]
   Matrix3<T> axes;                      ///< columns: normal from `other` to `body`, two tangents; world
-  Index directions = 1;                 ///< rows: the normal alone, or with tangents
+  Index directions = 1;                 ///< rows: the normal, and what friction adds: row()
+  bool tangents = false;                ///< Coulomb's two
   T gap{};                              ///< [m or rad]
   T friction{-1};                       ///< coefficient as the scene has it; negative: not given
   T target{};                           ///< least velocity along the normal after the step
-  T coefficient{};                      ///< Coulomb's, of rows with tangents
+  T coefficient{};                      ///< of all rows behind the normal
+  T torsion{}, rolling{};               ///< arms of the rows about the normal and about the tangents [m]; 0: none
   T effort{};                           ///< joint_friction: largest |impulse| [N m s or N s]
   T R_inverse{};                        ///< [1/kg]
+
+  /// Row k of a contact: the velocity of the point along a column of the axes, or arm · the angular velocity about it.
+  struct Row {
+    Index axis;
+    bool spins;
+    T arm;
+  };
+  [[nodiscard]] Row row(Index k) const {
+    if (k == 0) return {0, false, T(0)};
+    if (tangents && k < 3) return {k, false, T(0)};
+    if (tangents) k -= 2;
+    if (torsion > T(0) && k == 1) return {0, true, torsion};
+    return {torsion > T(0) ? k - 1 : k, true, rolling};
+  }
 };
 
 inline constexpr double gap_share = 0.2;  ///< β: of a penetration that is taken back in a step

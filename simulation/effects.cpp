@@ -11,6 +11,7 @@
 #include "simulation/effects/contacts.h"
 #include "simulation/effects/gravity.h"
 #include "simulation/effects/joint_rows.h"
+#include "simulation/effects/spin_friction.h"
 #include "simulation/effects/springs.h"
 #include "simulation/effects/velocity_products.h"
 #include "simulation/effects/wrenches.h"
@@ -125,17 +126,22 @@ Call contact_friction(const Scene& s) {
   }
   return any ? Call{true, "a coefficient above 0" + at(s, "contacts")} : Call{false, "no contact has a coefficient above 0"};
 }
-Call restitution(const Scene& s) {
+Call by_contacts(const Scene& s, double value, const char* noun, const char* unit) {
   if (!contacts(s).called) return {false, "no contacts"};
-  if (!(s.motion.restitution > 0)) return {false, "no restitution above 0"};
-  return {true, "restitution is " + number_text(s.motion.restitution) + at(s, "contacts")};
+  if (!(value > 0)) return {false, std::string("no ") + noun + " above 0"};
+  return {true, std::string(noun) + " is " + number_text(value) + unit + at(s, "contacts")};
 }
+Call torsional_friction(const Scene& s) { return by_contacts(s, s.motion.torsional_friction, "torsional friction", " m"); }
+Call rolling_friction(const Scene& s) { return by_contacts(s, s.motion.rolling_friction, "rolling friction", " m"); }
+Call restitution(const Scene& s) { return by_contacts(s, s.motion.restitution, "restitution", ""); }
 
 template <class T> void add_limits(Plan<T>& p, const Scene&) { p.template add<JointLimits<T>>(p.model); }
 template <class T> void add_joint_friction(Plan<T>& p, const Scene& s) { p.template add<JointFriction<T>>(s); }
 template <class T> void add_detection(Plan<T>& p, const Scene& s) { p.template add<Detection<T>>(s); }
 template <class T> void add_contacts(Plan<T>& p, const Scene& s) { p.template add<Contacts<T>>(s); }
 template <class T> void add_contact_friction(Plan<T>& p, const Scene&) { p.template add<ContactFriction<T>>(); }
+template <class T> void add_torsional_friction(Plan<T>& p, const Scene& s) { p.template add<TorsionalFriction<T>>(s.motion.torsional_friction); }
+template <class T> void add_rolling_friction(Plan<T>& p, const Scene& s) { p.template add<RollingFriction<T>>(s.motion.rolling_friction); }
 template <class T> void add_restitution(Plan<T>& p, const Scene& s) { p.template add<Restitution<T>>(s.motion.restitution); }
 template <class T> void add_gravity(Plan<T>& p, const Scene& s) { p.template add<Gravity<T>>(s.gravity, static_cast<Index>(p.model.bodies.size())); }
 template <class T> void add_products(Plan<T>& p, const Scene&) { p.template add<VelocityProducts<T>>(p.model, *p.mechanism); }
@@ -171,6 +177,10 @@ std::vector<EffectRow> make_effects() {
       {"contacts", "points that do not penetrate", "contacts: detect, or a list", Energy::conserves, contacts, "", nullptr, DELASSUS_ADDERS(add_contacts)},
       {"contact friction", "Coulomb's cone at contacts", "a coefficient above 0", Energy::dissipates, contact_friction, "contacts", nullptr,
        DELASSUS_ADDERS(add_contact_friction)},
+      {"torsional friction", "moments about the normals of contacts", "torsional_friction of contacts above 0", Energy::dissipates, torsional_friction, "contacts",
+       nullptr, DELASSUS_ADDERS(add_torsional_friction)},
+      {"rolling friction", "moments about the tangents of contacts", "rolling_friction of contacts above 0", Energy::dissipates, rolling_friction, "contacts", nullptr,
+       DELASSUS_ADDERS(add_rolling_friction)},
       {"restitution", "contacts that bounce", "restitution of contacts above 0", Energy::dissipates, restitution, "contacts", nullptr, DELASSUS_ADDERS(add_restitution)},
   };
 }

@@ -35,6 +35,8 @@ void never_written(const std::string& effect, Scene& s) {
   if (effect == "joint friction") for (Body& b : s.model.bodies) b.joint.friction.clear();
   if (effect == "collision detection" || effect == "contacts") s.motion.detects = false;
   if (effect == "contact friction") s.ground_friction = -1;
+  if (effect == "torsional friction") s.motion.torsional_friction = 0;
+  if (effect == "rolling friction") s.motion.rolling_friction = 0;
   if (effect == "restitution") s.motion.restitution = 0;
   if (effect == "loops") drop([](const Constraint& c) { return c.loop; });
 }
@@ -46,6 +48,7 @@ const std::map<std::string, std::function<Scene()>>& callers() {
       {"armature", everything_smooth}, {"couplings", everything_smooth},         {"joint locks", everything_smooth},
       {"joint limits", stopped_pendulum}, {"joint friction", stopped_pendulum},
       {"collision detection", thrown_box}, {"contacts", thrown_box}, {"contact friction", thrown_box}, {"restitution", thrown_box},
+      {"torsional friction", thrown_ball}, {"rolling friction", thrown_ball},
       {"loops", [] { return slider_crank(0.3, 0.8, 0.4, 5); }}};
   return all;
 }

@@ -179,6 +179,18 @@ inline Scene thrown_box() {
   return s;
 }
 
+/// A ball that touches the ground, slides, rolls and spins.
+inline Scene thrown_ball() {
+  Model m;
+  m.add(ball("ball", 2, 0.1));
+  Scene s = on_the_ground(std::move(m), {0, 0, -9.81}, 0.5);
+  s.q[2] = 0.1;
+  s.motion.nu << 1, 5, 20, 1, 0.5, 0;
+  s.motion.torsional_friction = 0.02;
+  s.motion.rolling_friction = 0.005;
+  return s;
+}
+
 template <class T> using StepPlan = simulation::Plan<T>;
 
 }  // namespace delassus::stepping

@@ -130,7 +130,7 @@ template <class T> void Contacts<T>::add_rows(Moment<T>& now) {
 
 template <class T> void ContactFriction<T>::add_rows(Moment<T>& now) {
   for (RowSet<T>& s : *now.rows)
-    if (s.kind == RowSet<T>::Kind::contact && s.friction > T(0)) s.directions = 3, s.coefficient = s.friction;
+    if (s.kind == RowSet<T>::Kind::contact && s.friction > T(0)) s.directions = 3, s.tangents = true, s.coefficient = s.friction;
 }
 
 template <class T> void Restitution<T>::add_rows(Moment<T>& now) {
