@@ -27,7 +27,7 @@ const std::vector<SolverRow>& solvers() {
        .source = "Todorov 2014; Castro, Permenter, Han 2022", .cost = "O(n + m) an iteration with local loops",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = false, .given_matrix = false, .make = make<NewtonConvex>},
       {.name = "proximal", .summary = "hard and redundant rows by proximal points, Newton inside; exact Coulomb by shifting",
-       .equations = "the same with R⁻¹ + E and b − E λ + Γ e_n", .certificate = "natural residual",
+       .equations = "the same from λ with R⁻¹ + E and b = u + Γ e_n − (R⁻¹ + E) λ", .certificate = "natural residual",
        .source = "Rockafellar 1976; Acary, Cadoux 2013", .cost = "O(n + m) an iteration with local loops",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = false, .make = make<ProximalNewton>},
       {.name = "admm", .summary = "alternating directions between the damped inverse and the cones, spectral ρ",

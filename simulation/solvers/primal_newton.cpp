@@ -33,12 +33,13 @@ template <class T> void PrimalNewton<T>::analyze(const ContactProblem<T>& p) {
     H_.blocks.push_back({p.groups[e].row, MatrixX<T>::Zero(p.groups[e].rows, p.groups[e].rows)});
   }
   for (VectorX<T>* const v : {&w_, &Mw_, &d_, &Md_, &tau_}) v->setZero(s.dofs());
-  for (VectorX<T>* const v : {&u_, &Jd_, &moved_, &trial_}) v->setZero(p.rows());
+  for (VectorX<T>* const v : {&u_, &Jd_, &moved_, &trial_, &origin_, &gained_}) v->setZero(p.rows());
 }
 
 template <class T> Report PrimalNewton<T>::start(const ContactProblem<T>& p) {
   problem_ = &p;
   w_.setZero();
+  origin_.setZero();
   const Report report = factor_.start(*p.mechanism);
   return report.ok() ? tree_->update(*p.mechanism) : report;
 }
@@ -46,6 +47,11 @@ template <class T> Report PrimalNewton<T>::start(const ContactProblem<T>& p) {
 template <class T> Report PrimalNewton<T>::begin_at(const VectorX<T>& lambda) {
   tree_->J_transposed(lambda, tau_);
   return tree_->M_inverse(tau_, w_);
+}
+
+template <class T> void PrimalNewton<T>::begin_from(const VectorX<T>& lambda) {
+  w_.setZero();
+  origin_ = lambda;
 }
 
 // λ and H of one group; in the metric R⁻¹ a cone is scaled by R^½ of each row.
@@ -93,7 +99,8 @@ template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, V
   const Report report = factor_.update_weights(weights_);
   if (!report.ok()) return report;
   tau_ = -Mw_;
-  factor_.solve(lambda.data(), tau_.data(), Jd.data(), d.data(), work_->data());
+  gained_ = lambda - origin_;
+  factor_.solve(gained_.data(), tau_.data(), Jd.data(), d.data(), work_->data());
   return report;
 }
 
@@ -102,7 +109,7 @@ template <class T> typename PrimalNewton<T>::Slope PrimalNewton<T>::slope(const 
   moved_ = u_ + alpha * Jd_;
   evaluate(R_inverse, moved_, trial_);
   weights_.assign(H_);
-  Slope s{d_.dot(Mw_) + alpha * d_.dot(Md_) - Jd_.dot(trial_), d_.dot(Md_)};
+  Slope s{d_.dot(Mw_) + alpha * d_.dot(Md_) - Jd_.dot(trial_ - origin_), d_.dot(Md_)};
   weights_.multiply(Jd_.data(), moved_.data());
   s.curvature += Jd_.dot(moved_);
   return s;
@@ -144,8 +151,9 @@ typename PrimalNewton<T>::Outcome PrimalNewton<T>::minimise(const VectorX<T>& R_
     last = !(step > std::max(velocity, floor)) || (step < 1e3 * floor && step >= before);
     before = step;
   }
-  // Fenchel: ½ wᵀMw + ℓ(u) + ½ λᵀ(G + R⁻¹)λ + λᵀb at λ(u) is ½ ‖w − M⁻¹Jᵀλ‖²_M
-  tree_->J_transposed(lambda, tau_);
+  // Fenchel: ½ wᵀMw + ℓ(u) + ½ λᵀ(G + R⁻¹)λ + λᵀb at λ(u) is ½ ‖w − M⁻¹Jᵀ(λ − λ₀)‖²_M
+  gained_ = lambda - origin_;
+  tree_->J_transposed(gained_, tau_);
   tau_ = Mw_ - tau_;
   if (tree_->M_inverse(tau_, d_).ok()) out.gap = static_cast<double>(T(0.5) * d_.dot(tau_));
   return out;

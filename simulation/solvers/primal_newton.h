@@ -1,11 +1,12 @@
 // Newton's method on the motion: what newton_convex is, and what proximal does inside.
 //
 //   min over w  ½ wᵀM w + Σ_c ℓ_c(u_c),   u = J w + b,   ℓ_c(u) = −min over λ ∈ K_c of ½ λᵀR⁻¹λ + λᵀu
+//   w is the motion of λ − λ₀: λ₀ = 0, or impulses whose motion b holds already, and what is rounded is of the size of a change
 //   λ_c(u) = Π in the metric R⁻¹ of −R u:  λ = R^½ Π̂(−R^½ u), Π̂ on the cone with coefficients μ_i (R_n/R_i)^½ … ; −∇ℓ_c = λ_c
-//   gradient  M w − Jᵀλ(u)
+//   gradient  M w − Jᵀ(λ(u) − λ₀)
 //   Hessian   M + JᵀH J,  H_c = R^½ Π̂' R^½ ≥ 0, 3 × 3 for a contact, 0 where it is open
-//   step      d = (M + JᵀH J)⁻¹ (Jᵀλ − M w): the factor of lcaba with H as weights. Only H changes: update_weights.
-//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ λ(u + α J d), which increases: Newton within a bracket, O(m) each
+//   step      d = (M + JᵀH J)⁻¹ (Jᵀ(λ − λ₀) − M w): the factor of lcaba with H as weights. Only H changes: update_weights.
+//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ (λ(u + α J d) − λ₀), which increases: Newton within a bracket, O(m) each
 // Cost     O(n + m) an iteration with local loops. Nothing allocates after analyze.
 // Source   E. Todorov 2014 (MuJoCo); A. Castro, F. Permenter, X. Han 2022 (SAP). The factor: paper, Algorithm 4.
 #pragma once
@@ -24,10 +25,13 @@ template <class T> class PrimalNewton {
   /// Why the rows cannot be taken, or "": the rows of a Coulomb group must be rows of one constraint.
   [[nodiscard]] static std::string refusal(const ContactProblem<T>& p);
   void analyze(const ContactProblem<T>& p);
-  /// Numbers of the mechanism; w is set to zero.
+  /// Numbers of the mechanism; w and λ₀ are set to zero.
   [[nodiscard]] Report start(const ContactProblem<T>& p);
   /// w = M⁻¹Jᵀλ: where a warm start begins.
   [[nodiscard]] Report begin_at(const VectorX<T>& lambda);
+
+  /// w = 0, λ₀ = λ: the b of minimise has the motion of λ in it.
+  void begin_from(const VectorX<T>& lambda);
 
   struct Outcome {
     Report report;
@@ -42,7 +46,7 @@ template <class T> class PrimalNewton {
   /// λ(u) with its blocks H in hessian().
   void evaluate(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
   [[nodiscard]] const Damping<T>& hessian() const { return H_; }
-  /// d = (M + JᵀHJ)⁻¹ (Jᵀλ − M w) and J d.
+  /// d = (M + JᵀHJ)⁻¹ (Jᵀ(λ − λ₀) − M w) and J d.
   [[nodiscard]] Report direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd);
 
  private:
@@ -60,7 +64,7 @@ template <class T> class PrimalNewton {
   std::unique_ptr<Workspace<T>> work_;
   Damping<T> H_;
   std::vector<std::size_t> block_of_;  // per group
-  VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, moved_, trial_, tau_;
+  VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, moved_, trial_, tau_, origin_, gained_;
 };
 
 }  // namespace delassus::simulation
