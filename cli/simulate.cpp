@@ -37,7 +37,7 @@ struct Sample {
   double time;
   VectorX<double> q, nu;
   double kinetic, potential;
-  Index rows;
+  Index rows, islands;
   int iterations;
   double residual, drift;
 };
@@ -48,7 +48,7 @@ struct Ran {
   std::int64_t steps = 0;
   double seconds = 0;           ///< of stepping alone
   simulation::StepReport last;
-  Index most_rows = 0;
+  Index most_rows = 0, most_islands = 0;
   std::int64_t iterations = 0, taken = 0, rejected = 0;
   double residual = 0, drift = 0, left = 0, error = 0;
   simulation::Observed<double> begin, end;
@@ -63,7 +63,7 @@ std::vector<std::string> columns(const Model& model) {
       const Index n = first[i + 1] - first[i];
       for (Index k = 0; k < n; ++k) out.push_back(std::string(what) + " " + joint + (n > 1 ? " " + std::to_string(k) : ""));
     }
-  for (const char* name : {"kinetic", "potential", "rows", "iterations", "residual", "drift"}) out.emplace_back(name);
+  for (const char* name : {"kinetic", "potential", "rows", "islands", "iterations", "residual", "drift"}) out.emplace_back(name);
   return out;
 }
 
@@ -71,13 +71,13 @@ std::vector<double> numbers(const Sample& s) {
   std::vector<double> out{s.time};
   out.insert(out.end(), s.q.begin(), s.q.end());
   out.insert(out.end(), s.nu.begin(), s.nu.end());
-  out.insert(out.end(), {s.kinetic, s.potential, static_cast<double>(s.rows), static_cast<double>(s.iterations), s.residual, s.drift});
+  out.insert(out.end(), {s.kinetic, s.potential, static_cast<double>(s.rows), static_cast<double>(s.islands), static_cast<double>(s.iterations), s.residual, s.drift});
   return out;
 }
 
 Sample sample_of(const simulation::Simulation<double>& s, const simulation::Observed<double>& o) {
   const auto& r = s.last();
-  return {s.time(), s.state().q, s.state().nu, o.kinetic, o.potential, r.rows, r.iterations, r.residual, r.drift};
+  return {s.time(), s.state().q, s.state().nu, o.kinetic, o.potential, r.rows, r.islands, r.iterations, r.residual, r.drift};
 }
 
 Ran run_scene(const Options& o, const Scene& scene) {
@@ -100,6 +100,7 @@ Ran run_scene(const Options& o, const Scene& scene) {
     if (!r.ok()) break;
     ++out.steps;
     out.most_rows = std::max(out.most_rows, r.rows);
+    out.most_islands = std::max(out.most_islands, r.islands);
     out.iterations += r.iterations;
     out.taken += r.taken;
     out.rejected += r.rejected;
@@ -169,7 +170,7 @@ json energy_json(const simulation::Observed<double>& o) {
 
 json ran_json(const Options& o, const Scene& scene, const Ran& r) {
   json out = {{"scene", scene.name}, {"step", o.settings.step}, {"steps", r.steps}, {"time", static_cast<double>(r.steps) * o.settings.step},
-          {"seconds", r.seconds}, {"begin", energy_json(r.begin)}, {"end", energy_json(r.end)}, {"most_rows", r.most_rows},
+          {"seconds", r.seconds}, {"begin", energy_json(r.begin)}, {"end", energy_json(r.end)}, {"most_rows", r.most_rows}, {"most_islands", r.most_islands},
           {"iterations", r.iterations}, {"residual", r.residual}, {"drift", r.drift}, {"left", r.left}, {"path", r.last.path},
           {"status", name(r.last.report.status)}, {"message", r.last.message}, {"interrupted", interrupted()}};
   if (o.settings.error > 0) out["error_control"] = {{"accuracy", o.settings.error}, {"largest", r.error}, {"taken", r.taken}, {"rejected", r.rejected}};
@@ -187,7 +188,8 @@ void print_ran(const Options& o, const Ran& r) {
                 static_cast<long long>(r.rejected), r.error, o.settings.error);
   if (r.drift > 0) std::printf("drift     at most %.2g m or rad a step, %.2g after closing\n", r.drift, r.left);
   if (r.most_rows > 0)
-    std::printf("rows      at most %lld; solver %.1f iterations a step, residual at most %.2g m/s\n", static_cast<long long>(r.most_rows),
+    std::printf("rows      at most %lld, in at most %lld island%s; solver %.1f iterations a step, residual at most %.2g m/s\n", static_cast<long long>(r.most_rows),
+                static_cast<long long>(r.most_islands), r.most_islands == 1 ? "" : "s",
                 r.steps ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0, r.residual);
   if (!r.last.ok())
     std::printf("ended     at step %lld: %s%s%s\n", static_cast<long long>(r.steps) + 1, std::string(name(r.last.report.status)).c_str(), r.last.message.empty() ? "" : "; ", r.last.message.c_str());

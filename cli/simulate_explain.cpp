@@ -21,6 +21,13 @@ std::int64_t operations(const Scene& scene, const simulation::Settings& settings
   return operation_count.total() / steps_counted;
 }
 
+/// Islands of the first step; −1 where it fails.
+Index islands(const Scene& scene, const simulation::Settings& settings) {
+  simulation::Simulation<double> s(scene, settings);
+  const auto& report = s.step();
+  return report.ok() ? report.islands : -1;
+}
+
 json known(std::int64_t n) { return n < 0 ? json(nullptr) : json(n); }
 
 }  // namespace
@@ -29,7 +36,7 @@ json explain_json(const Scene& scene, const simulation::Settings& settings) {
   const simulation::Plan<double> plan(scene, settings);
   const std::int64_t all = operations(scene, settings);
   json out = {{"path", plan.path->name()}, {"step", settings.step}, {"bytes", plan.bytes()}, {"path_bytes", plan.path->bytes()},
-              {"operations", known(all)}, {"effects", json::array()}};
+              {"operations", known(all)}, {"islands", known(islands(scene, settings))}, {"effects", json::array()}};
   for (const auto& line : plan.lines) {
     json e = {{"name", line.effect->name}, {"in", line.in}, {"called_for", line.call.called}, {"why", line.call.why}, {"terms", line.terms}, {"bytes", line.bytes}, {"operations", 0}};
     if (line.in) {
@@ -51,8 +58,8 @@ void print_explain(const json& j) {
     std::printf("%-2s%s  %s  %10s  %10s  %s\n", in ? "+" : "-", bench::pad_right(e["name"], 19).c_str(), bench::pad_right(e["terms"], 16).c_str(),
                 in ? bench::short_bytes(e["bytes"]).c_str() : "", in ? count(e["operations"]).c_str() : "", e["why"].get<std::string>().c_str());
   }
-  std::printf("a step: path %s, %s operations%s; effects hold %s, the path %s\n", j["path"].get<std::string>().c_str(), count(j["operations"]).c_str(),
-              j["path"] == "cones" ? " beside those of the solver" : "", bench::short_bytes(j["bytes"]).c_str(), bench::short_bytes(j["path_bytes"]).c_str());
+  std::printf("a step: path %s, %s operations%s, %s islands with rows in the first; effects hold %s, the path %s\n", j["path"].get<std::string>().c_str(), count(j["operations"]).c_str(),
+              j["path"] == "cones" ? " beside those of the solver" : "", count(j["islands"]).c_str(), bench::short_bytes(j["bytes"]).c_str(), bench::short_bytes(j["path_bytes"]).c_str());
 }
 
 }  // namespace delassus::cli

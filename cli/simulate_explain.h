@@ -6,7 +6,7 @@
 
 namespace delassus::cli {
 
-/// {path, step, bytes, operations, effects: [{name, in, why, terms, bytes, operations}]}: operations of a step, of an effect those that a
+/// {path, step, bytes, operations, islands, effects: [{name, in, why, terms, bytes, operations}]}: operations of a step, of an effect those that a
 /// step has less without it; null where a step fails, contact solvers not counted. Cost: some steps for each effect.
 [[nodiscard]] json explain_json(const Scene& scene, const simulation::Settings& settings);
 void print_explain(const json& j);

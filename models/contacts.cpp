@@ -36,6 +36,9 @@ const V3& reference_of(const Poses<double>& poses, Index body) {
   return poses.reference[static_cast<std::size_t>(poses.tree[static_cast<std::size_t>(body)])];
 }
 
+double margin_of(const ContactSearch& s, Index body) { return s.ahead.empty() ? s.margin : s.margin + s.ahead[static_cast<std::size_t>(body)]; }
+double margin_of(const ContactSearch& s, Index a, Index b) { return std::max(margin_of(s, a), margin_of(s, b)); }
+
 double smaller_friction(double a, double b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
 /// Lowest points of a shape, candidates only: the caller drops those above the margin.
@@ -183,7 +186,8 @@ std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const 
   return out;
 }
 
-/// Pairs of shapes whose bounding spheres come within the margin: sorted along x and swept.
+/// Pairs of shapes whose bounding spheres come within their margin: sorted along x and swept as far as the largest margin. Whether a
+/// pair is near does not depend on what else there is.
 std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Placed>& shapes, const Poses<double>& poses,
                                                             const ContactSearch& search) {
   std::vector<V3> at(shapes.size());
@@ -191,13 +195,17 @@ std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Pl
   for (std::size_t i = 0; i < shapes.size(); ++i) at[i] = reference_of(poses, shapes[i].body) + shapes[i].pose.translation, order[i] = i;
   auto left = [&](std::size_t i) { return at[i][0] - shapes[i].radius; };
   std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
+  double largest = search.margin;
+  for (const Placed& p : shapes) largest = std::max(largest, margin_of(search, p.body));
   std::vector<std::pair<std::size_t, std::size_t>> out;
   for (std::size_t k = 0; k < order.size(); ++k)
     for (std::size_t l = k + 1; l < order.size(); ++l) {
       const std::size_t i = std::min(order[k], order[l]), j = std::max(order[k], order[l]);
-      if (left(order[l]) > at[order[k]][0] + shapes[order[k]].radius + search.margin) break;
+      const double right = at[order[k]][0] + shapes[order[k]].radius, margin = margin_of(search, shapes[i].body, shapes[j].body);
+      if (left(order[l]) > right + largest) break;
+      if (left(order[l]) > right + margin) continue;
       if (search.object[static_cast<std::size_t>(shapes[i].body)] == search.object[static_cast<std::size_t>(shapes[j].body)]) continue;
-      if ((at[i] - at[j]).norm() <= shapes[i].radius + shapes[j].radius + search.margin) out.emplace_back(i, j);
+      if ((at[i] - at[j]).norm() <= shapes[i].radius + shapes[j].radius + margin) out.emplace_back(i, j);
     }
   std::sort(out.begin(), out.end());
   return out;
@@ -236,7 +244,7 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
       shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s)});
   std::vector<ContactPoint> out;
   if (search.ground)
-    for (const Placed& p : shapes) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], search.margin, out);
+    for (const Placed& p : shapes) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
   Index with_cylinder = 0, with_hull = 0;
   for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
     const Placed &a = shapes[i], &b = shapes[j];
@@ -246,8 +254,9 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
       continue;
     }
     const V3 shift = reference_of(poses, b.body) - reference_of(poses, a.body);
-    for (const ShapeContact& c : pair_contacts(a, b, shift, search.margin))
-      if (c.gap <= search.margin)
+    const double margin = margin_of(search, a.body, b.body);
+    for (const ShapeContact& c : pair_contacts(a, b, shift, margin))
+      if (c.gap <= margin)
         out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction)});
   }
   if (with_cylinder > 0) notes.push_back(std::to_string(with_cylinder) + " near pairs with a cylinder were not tested for contact");

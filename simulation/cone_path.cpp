@@ -32,18 +32,21 @@ template <class T> Identity identity_of(const RowSet<T>& s, Index k) {
 
 }  // namespace
 
+bool of_equation(const Identity& of) { return of[0] == of_equations; }
+
 const std::vector<std::string>& usual_solvers() {
   static const std::vector<std::string> names{"proximal", "admm", "pgs"};
   return names;
 }
 
 template <class T>
-ConePath<T>::ConePath(std::shared_ptr<const Structure> structure, const Damping<double>& damping, std::unique_ptr<EquationsPath<T>> equations,
-                      const std::string& solver, double residual, FrictionLaw law)
-    : base_(std::move(structure)), damping_(damping), equations_(std::move(equations)), residual_(residual), law_(law) {
+ConePath<T>::ConePath(std::shared_ptr<const Structure> structure, const Damping<double>& damping, std::shared_ptr<EquationsPath<T>> equations,
+                      const std::string& solver, double residual, FrictionLaw law, std::vector<Index> rows)
+    : base_(std::move(structure)), damping_(damping), equations_(std::move(equations)), residual_(residual), law_(law), row_of_(std::move(rows)) {
   if (!damping_.blocks.empty())
     throw ModelError("", "damping", "is a block, and the scene has contacts, limits or joint friction", "a number or a list; blocks where all rows are equations");
-  if (!equations_) free_ = std::make_unique<FreePath<T>>(base_);
+  for (Index r = static_cast<Index>(row_of_.size()); r < base_->rows; ++r) row_of_.push_back(r);
+  if (base_->rows == 0) free_ = std::make_unique<FreePath<T>>(base_);
   const std::vector<std::string> names = solver.empty() ? usual_solvers() : std::vector<std::string>{solver};
   for (const std::string& n : names) solvers_.push_back({n, find_solver(n).make(), false});
 }
@@ -127,7 +130,7 @@ template <class T> void ConePath<T>::start_warm(const Moment<T>& now) {
     for (Index k = 0; k < n; ++k) problem_.warm_start[row + k] = static_cast<double>(it->value[static_cast<std::size_t>(k)]);
   };
   Index row = base_->rows;
-  for (Index r = 0; r < row; ++r) take({of_equations, r, 0, 0}, r, 1);
+  for (Index r = 0; r < row; ++r) take({of_equations, row_of_[static_cast<std::size_t>(r)], 0, 0}, r, 1);
   for (const RowSet<T>& s : *now.rows) {
     for (Index k = 0; k < s.directions; k += 3) take(identity_of(s, k), row + k, std::min<Index>(3, s.directions - k));
     row += s.directions;
@@ -138,6 +141,7 @@ template <class T> StepReport ConePath<T>::solve() {
   StepReport out;
   out.path = name();
   out.rows = structure_->rows;
+  out.islands = 1;
   std::string words;
   for (Asked& a : solvers_) {
     const std::string refusal = a.solver->refusal(problem_);
@@ -161,7 +165,7 @@ template <class T> StepReport ConePath<T>::solve() {
 }
 
 template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
-  if (now.rows->empty()) return equations_ ? equations_->velocities(now, change, impulses) : free_->velocities(now, change, impulses);
+  if (now.rows->empty()) return base_->rows > 0 ? equations_->velocities(now, change, impulses) : free_->velocities(now, change, impulses);
   plan(*now.rows);
   fill(now);
   start_warm(now);
@@ -200,7 +204,7 @@ template <class T> void ConePath<T>::remember(const Moment<T>& now, State<T>& ne
     }
     row += s.directions;
   }
-  for (Index r = 0; r < base_->rows; ++r) next.impulses.push_back({{of_equations, r, 0, 0}, {value(r), T(0), T(0)}});
+  for (Index r = 0; r < base_->rows; ++r) next.impulses.push_back({{of_equations, row_of_[static_cast<std::size_t>(r)], 0, 0}, {value(r), T(0), T(0)}});
   std::sort(next.impulses.begin(), next.impulses.end(), [](const auto& a, const auto& b) { return a.of < b.of; });
 }
 

@@ -18,15 +18,19 @@
 
 namespace delassus::simulation {
 
+/// Whether an impulse is that of a row that always holds: of[1] is its number.
+[[nodiscard]] bool of_equation(const Identity& of);
+
 /// The solvers asked one after another where none is named.
 [[nodiscard]] const std::vector<std::string>& usual_solvers();
 
 template <class T> class ConePath final : public Path<T> {
  public:
-  /// `without_rows`: of the free path where no row is there; `equations` (or null) of the rows that always hold.
+  /// `equations` of the rows that always hold, for steps without others; null where there are none, or where each step has others.
+  /// `rows`: who those that always hold are from step to step; empty: 0, 1, …
   /// @throws ModelError for a solver that does not exist.
-  ConePath(std::shared_ptr<const Structure> structure, const Damping<double>& damping, std::unique_ptr<EquationsPath<T>> equations,
-           const std::string& solver, double residual, FrictionLaw law);
+  ConePath(std::shared_ptr<const Structure> structure, const Damping<double>& damping, std::shared_ptr<EquationsPath<T>> equations,
+           const std::string& solver, double residual, FrictionLaw law, std::vector<Index> rows = {});
   [[nodiscard]] std::string_view name() const override { return "cones"; }
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
   void remember(const Moment<T>& now, State<T>& next) override;
@@ -47,9 +51,10 @@ template <class T> class ConePath final : public Path<T> {
   std::shared_ptr<const Structure> base_;
   Damping<double> damping_;
   std::unique_ptr<FreePath<T>> free_;
-  std::unique_ptr<EquationsPath<T>> equations_;
+  std::shared_ptr<EquationsPath<T>> equations_;
   double residual_;
   FrictionLaw law_;
+  std::vector<Index> row_of_;  // identities of rows that always hold
   std::vector<Asked> solvers_;
   std::vector<std::array<Index, 4>> pattern_;  // per set of rows: kind, bodies, number
   std::shared_ptr<Structure> structure_;

@@ -50,6 +50,7 @@ template <class T> StepReport EquationsPath<T>::velocities(Moment<T>& now, Vecto
   StepReport out;
   out.path = name();
   out.rows = operator_->size();
+  out.islands = 1;
   take(*now.problem);
   out.report = taken_;
   if (!out.report.ok()) return out;

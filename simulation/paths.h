@@ -21,6 +21,7 @@ struct StepReport {
   Report report;             ///< of the factor, or of the operator of equations
   std::string_view path;     ///< the path taken
   Index rows = 0;            ///< rows of this step
+  Index islands = 0;         ///< mechanisms with rows that were solved apart
   int iterations = 0;        ///< of a solver
   double residual = 0;       ///< of a solver [m/s]
   int taken = 0, rejected = 0; ///< steps of error control within h

@@ -6,6 +6,7 @@
 #include "algorithms/kit/counted.h"
 #include "algorithms/mechanism/loop_closing.h"
 #include "simulation/closing.h"
+#include "simulation/islands_path.h"
 
 namespace delassus::simulation {
 namespace {
@@ -65,24 +66,41 @@ template <class T> Plan<T>::Plan(const Scene& scene, const Settings& settings) {
     if (line.in && adder != nullptr) adder(*this, scene);
   }
   now_ = nullptr;
-  const auto structure = mechanism->structure();
-  std::unique_ptr<EquationsPath<T>> equations;
-  if (structure->rows > 0) equations = make_equations(scene, settings);
-  if (!rows.empty()) path = std::make_unique<ConePath<T>>(structure, damping, std::move(equations), settings.solver, settings.residual, settings.friction);
-  else if (equations) path = std::move(equations);
-  else path = std::make_unique<FreePath<T>>(structure);
+  make_path(scene, settings);
 }
 
-/// The path of rows that always hold, and what closes their drift.
-template <class T> std::unique_ptr<EquationsPath<T>> Plan<T>::make_equations(const Scene& scene, const Settings& settings) {
+/// The path by what rows there may be, and what closes the drift of those that always hold.
+template <class T> void Plan<T>::make_path(const Scene& scene, const Settings& settings) {
+  using Way = std::shared_ptr<Path<T>>;
+  using Equations = std::shared_ptr<EquationsPath<T>>;
   const auto structure = mechanism->structure();
-  auto equations = std::make_unique<EquationsPath<T>>(structure, damping.template cast<T>(), settings.op, settings.accuracy);
-  const auto closes = [](const Constraint& c) { return c.kind != Constraint::Kind::coupling && c.kind != Constraint::Kind::general && !acts_on_joint(c.kind); };
-  if (std::any_of(model.constraints.begin(), model.constraints.end(), closes)) {
-    check_closed(scene, *this);
-    add<Closing<T>>(model, *mechanism, *equations);
+  const bool cones = !rows.empty();
+  const auto equations_of = [&](const std::shared_ptr<const Structure>& s, const Damping<double>& d) {
+    return std::make_shared<EquationsPath<T>>(s, d.template cast<T>(), settings.op, settings.accuracy);
+  };
+  const auto way = [cones, solver = settings.solver, residual = settings.residual, law = settings.friction](
+                       const std::shared_ptr<const Structure>& s, const Damping<double>& d, const Equations& equations, const std::vector<Index>& numbers) -> Way {
+    if (cones) return std::make_shared<ConePath<T>>(s, d, equations, solver, residual, law, numbers);
+    if (equations) return equations;
+    return std::make_shared<FreePath<T>>(s);
+  };
+  std::vector<ClosedTogether<T>> loops;
+  if (!settings.together && Islands(*structure).trees() > 1 && (cones || structure->rows > 0)) {
+    auto islands = std::make_shared<IslandsPath<T>>(cones ? "cones" : "equations", structure, damping, way, equations_of);
+    for (const auto& l : islands->loops()) loops.push_back({l.path.get(), l.part.bodies, l.part.rows});
+    path = std::move(islands);
+  } else {
+    Equations equations;
+    if (structure->rows > 0) {
+      equations = equations_of(structure, damping);
+      loops.push_back(all_of(model, *equations));
+    }
+    path = way(structure, damping, equations, {});
   }
-  return equations;
+  const auto closes = [](const Constraint& c) { return c.kind != Constraint::Kind::coupling && c.kind != Constraint::Kind::general && !acts_on_joint(c.kind); };
+  if (std::none_of(model.constraints.begin(), model.constraints.end(), closes)) return;
+  check_closed(scene, *this);
+  add<Closing<T>>(model, *mechanism, std::move(loops));
 }
 
 /// Bodies, and the constraints of the effects that are in, in the order of the scene.

@@ -5,6 +5,7 @@
 //            none                  ABA alone: no Jacobian, no solver
 //            equations only        one solve of the pair (ν, λ) by an operator, the ladder unless another is named
 //            cones                 a contact problem for a solver; where a step has no such row, one of the above
+//          Where there are several trees and any rows, every island goes its own way (islands_path.h).
 #pragma once
 
 #include <memory>
@@ -30,6 +31,7 @@ struct Settings {
   std::string solver;                                ///< of cones; empty: usual_solvers(), one after another
   FrictionLaw friction = FrictionLaw::exact;         ///< exact Coulomb, or its convex relaxation, which lifts what slides
   double residual = 1e-10;                           ///< asked of it: natural residual [m/s]
+  bool together = false;                             ///< islands in one problem: what solving them apart is held against
 };
 
 /// What became of a row of the table.
@@ -56,7 +58,7 @@ template <class T> class Plan {
   std::vector<DetectionTerm<T>*> detections;
   std::vector<RowsTerm<T>*> rows;
   std::vector<EventTerm<T>*> events;
-  std::unique_ptr<Path<T>> path;
+  std::shared_ptr<Path<T>> path;
 
   /// For the rows of the table: takes an effect and enters it in the lists of what it is.
   template <class E, class... Arguments> E& add(Arguments&&... arguments) {
@@ -81,7 +83,7 @@ template <class T> class Plan {
     }
   }
   void take_constraints(const Scene& scene);
-  std::unique_ptr<EquationsPath<T>> make_equations(const Scene& scene, const Settings& settings);
+  void make_path(const Scene& scene, const Settings& settings);
 
   std::vector<std::unique_ptr<Effect>> owners_;
   PlanLine* now_ = nullptr;  // the row whose terms are added

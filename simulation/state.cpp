@@ -12,6 +12,15 @@ template <class T> Advance<T>::Advance(const Model& model) {
   }
 }
 
+template <class T> Advance<T>::Advance(const Model& model, const std::vector<Index>& bodies) {
+  Index dof = 0;
+  for (const Index i : bodies) {
+    const JointType type = model.bodies[static_cast<std::size_t>(i)].joint.type;
+    joints_.push_back({type, model.first_q[static_cast<std::size_t>(i)], dof, dof_count(type)});
+    dof += dof_count(type);
+  }
+}
+
 template <class T> void Advance<T>::operator()(const T& h, VectorX<T>& q, VectorX<T>& nu) const {
   for (const Joint& j : joints_) {
     T* const at = q.data() + j.q;

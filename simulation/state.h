@@ -34,6 +34,8 @@ template <class T> struct State {
 template <class T> class Advance {
  public:
   explicit Advance(const Model& model);
+  /// Of some bodies: displacements of their joints, one behind the other; q is that of the model.
+  Advance(const Model& model, const std::vector<Index>& bodies);
   void operator()(const T& h, VectorX<T>& q, VectorX<T>& nu) const;
   /// q alone: a displacement d of the joints, d in the axes at q.
   void displace(const VectorX<T>& d, VectorX<T>& q) const;

@@ -47,28 +47,26 @@ Detection<T>::Detection(const Scene& scene)
   speeds_.resize(scene.model.bodies.size());
 }
 
-/// As far as two bodies may come towards each other in a step.
-template <class T> double Detection<T>::ahead(Moment<T>& now, const Poses<double>& at) {
+/// As far as each body comes in two steps: two of them towards each other in one.
+template <class T> void Detection<T>::look_ahead(Moment<T>& now, const Poses<double>& at) {
   const Problem<T>& p = *now.problem;
   const Structure& s = *p.structure;
-  double fastest = 0;
+  search_.ahead.resize(speeds_.size());
   for (Index i = 0; i < s.bodies(); ++i) {
     speeds_[i].setZero();
     if (s.parent[i] != ground) speeds_[i] = speeds_[s.parent[i]];
     for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k)
       for (Index c = 0; c < 6; ++c) speeds_[i][c] += static_cast<double>(p.S[k][c]) * static_cast<double>(now.state->nu[k]);
     const Vector3<double> omega = speeds_[i].head<3>(), v = speeds_[i].tail<3>() + omega.cross(at.position[i]);
-    if (reach_[i] > 0) fastest = std::max(fastest, v.norm() + omega.norm() * reach_[i]);
+    search_.ahead[i] = 2 * static_cast<double>(now.h) * (v.norm() + omega.norm() * reach_[i]);
   }
-  return 2 * static_cast<double>(now.h) * fastest;
 }
 
 template <class T> void Detection<T>::detect(Moment<T>& now) {
   const Poses<double> at = in_double(now.poses());
-  ContactSearch search = search_;
-  search.margin += ahead(now, at);
+  look_ahead(now, at);
   notes_.clear();
-  for (ContactPoint p : find_contacts(*now.model, at, search, notes_)) {
+  for (ContactPoint p : find_contacts(*now.model, at, search_, notes_)) {
     if (p.friction < 0 || (p.other == ground && ground_friction_ >= 0)) p.friction = ground_friction_;
     if (friction_ >= 0) p.friction = friction_;
     now.touching.push_back({p, R_inverse_});

@@ -27,7 +27,7 @@ template <class T> class Detection final : public Effect, public DetectionTerm<T
   [[nodiscard]] Index bytes() const override { return static_cast<Index>(sizeof(*this) + speeds_.size() * sizeof(Vector6<double>) + reach_.size() * sizeof(double)); }
 
  private:
-  double ahead(Moment<T>& now, const Poses<double>& at);
+  void look_ahead(Moment<T>& now, const Poses<double>& at);
   ContactSearch search_;
   double friction_, ground_friction_, R_inverse_;
   std::vector<double> reach_;            // per body: of its shapes from its origin

@@ -1,0 +1,150 @@
+#include "simulation/islands_path.h"
+
+#include <algorithm>
+
+#include "algorithms/kit/counted.h"
+
+namespace delassus::simulation {
+namespace {
+
+std::size_t z(Index i) { return static_cast<std::size_t>(i); }
+
+/// Trees by the first tree of their set, in ascending order.
+std::map<Index, std::vector<Index>> sets_of(const std::vector<Index>& first) {
+  std::map<Index, std::vector<Index>> out;
+  for (std::size_t t = 0; t < first.size(); ++t) out[first[t]].push_back(static_cast<Index>(t));
+  return out;
+}
+
+}  // namespace
+
+template <class T>
+IslandsPath<T>::Mover::Mover(Part<T> of, const Moment<T>& whole) : part(std::move(of)), now(*whole.model, *whole.mechanism, whole.h) {
+  now.state = &state, now.problem = &part.problem, now.force = &force, now.rows = &rows;
+}
+
+template <class T>
+IslandsPath<T>::IslandsPath(std::string_view name, std::shared_ptr<const Structure> structure, Damping<double> damping, Make make, const MakeEquations& make_equations)
+    : name_(name), structure_(std::move(structure)), damping_(std::move(damping)), make_(std::move(make)), islands_(*structure_) {
+  loops_of_.assign(z(islands_.trees()), -1);
+  for (const auto& [first, trees] : sets_of(islands_.loops())) {
+    Part<T> part(*structure_, islands_, trees);
+    if (part.rows.empty()) continue;
+    for (const Index t : trees) loops_of_[z(t)] = static_cast<Index>(loops_.size());
+    auto path = make_equations(part.structure, part.damping(damping_));
+    loops_.push_back({std::move(part), std::move(path)});
+  }
+  for (const Loops& l : loops_) (void)make_(l.part.structure, l.part.damping(damping_), l.path, l.part.rows);  // refusals come before the first step
+}
+
+template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(const std::vector<Index>& trees, const Moment<T>& now) {
+  std::unique_ptr<Mover>& m = movers_[trees];
+  if (!m) {
+    std::vector<Loops*> loops;
+    for (const Index t : trees)
+      if (loops_of_[z(t)] >= 0) loops.push_back(&loops_[z(loops_of_[z(t)])]);
+    std::sort(loops.begin(), loops.end());
+    loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
+    Part<T> part(*structure_, islands_, trees);
+    const bool alone = loops.size() == 1 && loops[0]->part.bodies == part.bodies;  // its equations are those of the loops, on one structure
+    m = std::make_unique<Mover>(alone ? loops[0]->part : std::move(part), now);
+    if (alone) m->equations = loops[0]->path;
+    else m->loops = std::move(loops);
+    m->path = make_(m->part.structure, m->part.damping(damping_), m->equations, m->part.rows);
+  }
+  m->used = true;
+  m->rows.clear();
+  m->at.clear();
+  m->state.impulses.clear();
+  return *m;
+}
+
+/// Every island its rows, and where they stand in the whole.
+template <class T> void IslandsPath<T>::deal(Moment<T>& now) {
+  islands_.join(*now.rows);
+  moving_.clear();
+  of_tree_.assign(z(islands_.trees()), nullptr);
+  for (auto& [trees, m] : movers_) m->used = false;
+  for (const auto& [first, trees] : sets_of(islands_.islands())) {
+    moving_.push_back(&mover_of(trees, now));
+    for (const Index t : trees) of_tree_[z(t)] = moving_.back();
+  }
+  std::erase_if(movers_, [](const auto& entry) { return !entry.second->used; });
+  Index row = structure_->rows;
+  for (const RowSet<T>& s : *now.rows) {
+    Mover& m = *of_tree_[z(islands_.tree_of(s.body))];
+    m.rows.push_back(s);
+    m.rows.back().body = m.part.own(s.body);
+    if (s.kind == RowSet<T>::Kind::contact && s.other != ground) m.rows.back().other = m.part.own(s.other);
+    m.at.push_back(row);
+    row += s.directions;
+  }
+  for (const auto& impulse : now.state->impulses) of_tree_[z(tree_of(impulse.of))]->state.impulses.push_back(impulse);
+}
+
+template <class T> Index IslandsPath<T>::tree_of(const Identity& of) const {
+  if (!of_equation(of)) return islands_.tree_of(of[1]);
+  return std::max<Index>(0, islands_.tree_of_row()[z(of[1])]);
+}
+
+template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
+  m.part.take(*now.problem);
+  m.part.gather(*now.force, m.force);
+  m.part.gather(now.state->nu, m.state.nu);
+  m.now.h = now.h, m.now.weight = now.weight;
+  StepReport out = m.path->velocities(m.now, m.change, m.impulses);
+  if (!out.ok()) return out;
+  m.part.scatter(m.change, change);
+  Index own = 0;
+  if (m.impulses.size() > 0) {
+    for (const Index r : m.part.rows) impulses[r] = m.impulses[own++];
+    for (std::size_t e = 0; e < m.rows.size(); ++e)
+      for (Index k = 0; k < m.rows[e].directions; ++k) impulses[m.at[e] + k] = m.impulses[own++];
+  }
+  for (Loops* l : m.loops) {
+    l->part.take(*now.problem);
+    l->path->take(l->part.problem);
+  }
+  return out;
+}
+
+template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
+  deal(now);
+  Index rows = structure_->rows;
+  for (const RowSet<T>& s : *now.rows) rows += s.directions;
+  change = VectorX<T>::Constant(structure_->dofs(), T(0));
+  impulses = VectorX<T>::Constant(rows, T(0));
+  StepReport out;
+  out.path = "free";
+  for (Mover* m : moving_) {
+    const StepReport r = move(*m, now, change, impulses);
+    if (r.rows > 0 && out.path != "cones") out.path = r.path;
+    out.rows += r.rows, out.islands += r.islands, out.iterations += r.iterations;
+    out.residual = std::max(out.residual, r.residual);
+    out.report = r.report, out.message = r.message;
+    if (!out.ok()) break;
+  }
+  return out;
+}
+
+template <class T> void IslandsPath<T>::remember(const Moment<T>&, State<T>& next) {
+  next.impulses.clear();
+  State<T> own;
+  for (const Mover* m : moving_) {
+    m->path->remember(m->now, own);
+    next.impulses.insert(next.impulses.end(), own.impulses.begin(), own.impulses.end());
+  }
+  std::sort(next.impulses.begin(), next.impulses.end(), [](const auto& a, const auto& b) { return a.of < b.of; });
+}
+
+template <class T> Index IslandsPath<T>::bytes() const {
+  Index sum = 0;
+  for (const Loops& l : loops_) sum += l.part.bytes() + l.path->bytes();
+  for (const auto& [trees, m] : movers_) sum += m->part.bytes() + m->path->bytes();
+  return sum;
+}
+
+template class IslandsPath<double>;
+template class IslandsPath<Counted>;
+
+}  // namespace delassus::simulation
