@@ -39,6 +39,8 @@ const V3& reference_of(const Poses<double>& poses, Index body) {
 double margin_of(const ContactSearch& s, Index body) { return s.ahead.empty() ? s.margin : s.margin + s.ahead[static_cast<std::size_t>(body)]; }
 double margin_of(const ContactSearch& s, Index a, Index b) { return std::max(margin_of(s, a), margin_of(s, b)); }
 
+bool rests(const ContactSearch& s, Index body) { return s.resting != nullptr && (*s.resting)[static_cast<std::size_t>(body)] != 0; }
+
 double smaller_friction(double a, double b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
 /// Lowest points of a shape, candidates only: the caller drops those above the margin.
@@ -203,7 +205,7 @@ std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Pl
       const std::size_t i = std::min(order[k], order[l]), j = std::max(order[k], order[l]);
       const double right = at[order[k]][0] + shapes[order[k]].radius, margin = margin_of(search, shapes[i].body, shapes[j].body);
       if (left(order[l]) > right + largest) break;
-      if (left(order[l]) > right + margin) continue;
+      if (left(order[l]) > right + margin || (rests(search, shapes[i].body) && rests(search, shapes[j].body))) continue;
       if (search.object[static_cast<std::size_t>(shapes[i].body)] == search.object[static_cast<std::size_t>(shapes[j].body)]) continue;
       if ((at[i] - at[j]).norm() <= shapes[i].radius + shapes[j].radius + margin) out.emplace_back(i, j);
     }
@@ -244,7 +246,8 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
       shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s)});
   std::vector<ContactPoint> out;
   if (search.ground)
-    for (const Placed& p : shapes) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
+    for (const Placed& p : shapes)
+      if (!rests(search, p.body)) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
   Index with_cylinder = 0, with_hull = 0;
   for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
     const Placed &a = shapes[i], &b = shapes[j];

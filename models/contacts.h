@@ -29,6 +29,7 @@ struct ContactSearch {
   double ground_height = 0;     ///< [m]
   std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
   std::vector<double> ahead;    ///< per body [m]: as much is added to the margin, of a pair the larger; empty: nothing
+  const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: what rests is not looked for but against what does not; null: all
 };
 
 /// Points in the order (first body, second body, shapes, position on the face). `notes` gets a sentence for each

@@ -31,7 +31,7 @@ void SceneLoader::warn(const std::string& kind, const Yaml& at, const std::strin
 }
 
 Scene SceneLoader::run() {
-  root_.keys({"note", "pose", "strict", "gravity", "robots", "boxes", "ground", "constraints", "hold", "assembly", "springs", "motors", "wrenches", "contacts", "damping"});
+  root_.keys({"note", "pose", "strict", "gravity", "robots", "boxes", "ground", "constraints", "hold", "assembly", "springs", "motors", "wrenches", "contacts", "sleeping", "damping"});
   scene_.file = path_;
   scene_.name = std::filesystem::path(path_).stem().string();
   if (root_.has("note")) scene_.note = root_.at("note").text("a text");
@@ -64,10 +64,11 @@ Scene SceneLoader::run() {
   close_loops_of_scene();
   fill_open(false);
   if (root_.has("springs")) read_springs(root_.at("springs"));
+  if (root_.has("sleeping")) read_sleeping(root_.at("sleeping"));
   if (root_.has("motors")) read_motors(root_.at("motors"));
   if (root_.has("wrenches")) read_wrenches(root_.at("wrenches"));
   if (root_.has("contacts")) read_contacts(root_.at("contacts"));
-  for (const char* key : {"gravity", "springs", "motors", "wrenches", "contacts", "constraints"}) stands_at(key);
+  for (const char* key : {"gravity", "springs", "motors", "wrenches", "contacts", "constraints", "sleeping"}) stands_at(key);
   if (scene_.motion.nu.size() > 0) velocities();  // of bodies behind the last one with a velocity
   read_damping(root_);
   validate(scene_.model, path_);

@@ -69,6 +69,7 @@ class SceneLoader {
   void read_springs(const Yaml& y);
   void read_motors(const Yaml& y);
   void read_wrenches(const Yaml& y);
+  void read_sleeping(const Yaml& y);
   [[nodiscard]] Index dof_of(const Yaml& y, Index body) const;
   VectorX<double>& velocities();
   void stands_at(const char* key);

@@ -110,4 +110,12 @@ void SceneLoader::read_wrenches(const Yaml& list) {
   }
 }
 
+void SceneLoader::read_sleeping(const Yaml& y) {
+  y.keys({"linear", "angular", "after"});
+  SceneMotion::Sleeping& s = scene_.motion.sleeping;
+  s.linear = y.at("linear").non_negative(" [m/s]");
+  s.angular = y.at("angular").non_negative(" [rad/s]");
+  s.after = y.at("after").non_negative(" [s]");
+}
+
 }  // namespace delassus

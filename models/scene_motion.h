@@ -32,6 +32,11 @@ struct SceneMotion {
     std::string where;
   };
 
+  /// What has been slower than this for a while is not moved until something touches it.
+  struct Sleeping {
+    double linear = -1, angular = -1, after = 0;  ///< [m/s, rad/s, s]; negative: not asked for
+  };
+
   VectorX<double> nu;               ///< velocities at the start; empty: at rest
   std::vector<Spring> springs;
   std::vector<Motor> motors;
@@ -42,6 +47,7 @@ struct SceneMotion {
   double restitution = 0;           ///< of all contacts
   double torsional_friction = 0, rolling_friction = 0;  ///< of all contacts: largest moment about the normal, and across it, per normal force [m]
   double contact_damping = 0;       ///< R⁻¹ of the rows of contacts that are found [1/kg]
+  Sleeping sleeping;
   std::map<std::string, std::string> where;  ///< key of the scene → file:line
 
   /// The first coordinate in q of a degree of freedom, −1 where it has none (quaternions).

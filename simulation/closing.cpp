@@ -64,8 +64,8 @@ template <class T> void Closing<T>::keep(Loop& l, VectorX<T>& q) {
 template <class T> void Closing<T>::after(Moment<T>& now, State<T>& next) {
   measure(next.q, gap_, &Loop::open);
   for (Loop& l : loops_) {
-    now.drift = std::max(now.drift, static_cast<double>(l.open));
-    l.ends = false;
+    l.ends = now.resting != nullptr && (*now.resting)[static_cast<std::size_t>(l.of.bodies[0])] != 0;
+    if (!l.ends) now.drift = std::max(now.drift, static_cast<double>(l.open));
   }
   for (int k = 0; k < 5; ++k) {
     bool any = false;

@@ -165,6 +165,7 @@ template <class T> StepReport ConePath<T>::solve() {
 }
 
 template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
+  asked_ = false;
   if (now.rows->empty()) return base_->rows > 0 ? equations_->velocities(now, change, impulses) : free_->velocities(now, change, impulses);
   plan(*now.rows);
   fill(now);
@@ -180,6 +181,7 @@ template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>
   tree_->J(more_, rows_of_);
   for (Index r = 0; r < rows_of_.rows(); ++r) problem_.free_velocity[r] = static_cast<double>(rows_of_(r, 0));
   out = solve();
+  asked_ = true, solved_ = out.ok();
   if (!out.ok()) return out;
   impulses = lambda_.template cast<T>();
   rows_of_.col(0) = impulses;
@@ -189,6 +191,10 @@ template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>
   change += motion_.col(0);
   if (equations_) equations_->take(*now.problem);
   return out;
+}
+
+template <class T> void ConePath<T>::problems(const typename Path<T>::Visit& visit) const {
+  if (asked_) visit(problem_, solved_);
 }
 
 template <class T> void ConePath<T>::remember(const Moment<T>& now, State<T>& next) {

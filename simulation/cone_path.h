@@ -5,7 +5,7 @@
 //          rows are concerned than in the last step; impulses are remembered by what a row is and start the next solve.
 //          Where a step has no row in a cone, the path is that of its equations, or the free one.
 // Never    is an impulse used that a solver is not sure of: the next one of the list is asked, and if none reaches the residual the
-//          step ends with its words and the problem stays here to be written to a file (problem()).
+//          step ends with its words and the problem stays here to be written to a file (problems()).
 // Cost     of the solver; building the problem 60 operations a row. Allocates where the rows change.
 #pragma once
 
@@ -35,7 +35,7 @@ template <class T> class ConePath final : public Path<T> {
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
   void remember(const Moment<T>& now, State<T>& next) override;
   [[nodiscard]] Index bytes() const override;
-  [[nodiscard]] const ContactProblem<double>& problem() const { return problem_; }  ///< of the last step with cones
+  void problems(const typename Path<T>::Visit& visit) const override;
 
  private:
   struct Asked {
@@ -63,6 +63,7 @@ template <class T> class ConePath final : public Path<T> {
   std::unique_ptr<TreeOperators<T>> tree_;
   ContactProblem<double> problem_;
   VectorX<double> lambda_;
+  bool asked_ = false, solved_ = false;  // in the last step
   MatrixX<T> push_, motion_, rows_of_, more_;
 };
 

@@ -11,6 +11,7 @@
 #include "simulation/effects/contacts.h"
 #include "simulation/effects/gravity.h"
 #include "simulation/effects/joint_rows.h"
+#include "simulation/effects/sleeping.h"
 #include "simulation/effects/spin_friction.h"
 #include "simulation/effects/springs.h"
 #include "simulation/effects/velocity_products.h"
@@ -134,6 +135,11 @@ Call by_contacts(const Scene& s, double value, const char* noun, const char* uni
 Call torsional_friction(const Scene& s) { return by_contacts(s, s.motion.torsional_friction, "torsional friction", " m"); }
 Call rolling_friction(const Scene& s) { return by_contacts(s, s.motion.rolling_friction, "rolling friction", " m"); }
 Call restitution(const Scene& s) { return by_contacts(s, s.motion.restitution, "restitution", ""); }
+Call sleeping(const Scene& s) {
+  const auto& l = s.motion.sleeping;
+  if (l.linear < 0) return {false, "the scene does not ask for sleeping"};
+  return {true, "below " + number_text(l.linear) + " m/s and " + number_text(l.angular) + " rad/s for " + number_text(l.after) + " s" + at(s, "sleeping")};
+}
 
 template <class T> void add_limits(Plan<T>& p, const Scene&) { p.template add<JointLimits<T>>(p.model); }
 template <class T> void add_joint_friction(Plan<T>& p, const Scene& s) { p.template add<JointFriction<T>>(s); }
@@ -150,6 +156,8 @@ template <class T> void add_springs(Plan<T>& p, const Scene& s) { p.template add
 template <class T> void add_damping(Plan<T>& p, const Scene&) { p.template add<JointDamping<T>>(p.model); }
 template <class T> void add_motors(Plan<T>& p, const Scene& s) { p.template add<Motors<T>>(p.model, s.motion.motors); }
 template <class T> void add_armature(Plan<T>& p, const Scene& s) { p.template add<Armature<T>>(s.model); }
+
+template <class T> void add_sleeping(Plan<T>& p, const Scene& s) { p.template add<Sleeping<T>>(p.model, s.motion.sleeping, p.step, p.detections); }
 
 #define DELASSUS_ADDERS(f) {&f<double>, &f<Counted>}
 
@@ -182,6 +190,8 @@ std::vector<EffectRow> make_effects() {
       {"rolling friction", "moments about the tangents of contacts", "rolling_friction of contacts above 0", Energy::dissipates, rolling_friction, "contacts", nullptr,
        DELASSUS_ADDERS(add_rolling_friction)},
       {"restitution", "contacts that bounce", "restitution of contacts above 0", Energy::dissipates, restitution, "contacts", nullptr, DELASSUS_ADDERS(add_restitution)},
+      {"sleeping", "islands at rest are not moved until something touches them", "sleeping, with the speeds below which it is rest", Energy::dissipates, sleeping, "",
+       nullptr, DELASSUS_ADDERS(add_sleeping)},
   };
 }
 

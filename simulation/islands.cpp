@@ -28,8 +28,11 @@ void Islands::flatten(std::vector<Index>& first) {
 }
 
 Islands::Islands(const Structure& s) {
-  for (Index i = 0, trees = 0; i < s.bodies(); ++i) tree_of_.push_back(s.parent[i] == ground ? trees++ : tree_of_[z(s.parent[i])]);
-  loops_.resize(tree_of_.empty() ? 0 : z(*std::max_element(tree_of_.begin(), tree_of_.end())) + 1);
+  for (Index i = 0; i < s.bodies(); ++i) {
+    if (s.parent[i] == ground) root_of_.push_back(i);
+    tree_of_.push_back(s.parent[i] == ground ? static_cast<Index>(root_of_.size()) - 1 : tree_of_[z(s.parent[i])]);
+  }
+  loops_.resize(root_of_.size());
   std::iota(loops_.begin(), loops_.end(), Index{0});
   tree_of_row_.assign(z(s.rows), -1);
   for (const auto& c : s.link_constraints) {

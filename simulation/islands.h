@@ -29,6 +29,7 @@ class Islands {
 
   [[nodiscard]] Index trees() const { return static_cast<Index>(loops_.size()); }
   [[nodiscard]] Index tree_of(Index body) const { return tree_of_[static_cast<std::size_t>(body)]; }
+  [[nodiscard]] Index root_of(Index tree) const { return root_of_[static_cast<std::size_t>(tree)]; }
   /// Per tree: the first tree of the island, or of the loops, that it is in.
   [[nodiscard]] const std::vector<Index>& islands() const { return island_; }
   [[nodiscard]] const std::vector<Index>& loops() const { return loops_; }
@@ -38,7 +39,7 @@ class Islands {
  private:
   static void unite(std::vector<Index>& first, Index a, Index b);
   static void flatten(std::vector<Index>& first);
-  std::vector<Index> tree_of_, loops_, island_, tree_of_row_;
+  std::vector<Index> tree_of_, root_of_, loops_, island_, tree_of_row_;
 };
 
 template <class T> class Part {

@@ -61,11 +61,16 @@ template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(cons
 
 /// Every island its rows, and where they stand in the whole.
 template <class T> void IslandsPath<T>::deal(Moment<T>& now) {
+  const auto rests = [&](Index body) { return now.resting != nullptr && (*now.resting)[z(body)] != 0; };
+  std::erase_if(*now.rows, [&](const RowSet<T>& s) { return rests(s.body); });
   islands_.join(*now.rows);
+  now.island = &islands_.islands();
+  kept_.clear();
   moving_.clear();
   of_tree_.assign(z(islands_.trees()), nullptr);
   for (auto& [trees, m] : movers_) m->used = false;
   for (const auto& [first, trees] : sets_of(islands_.islands())) {
+    if (rests(islands_.root_of(first))) continue;
     moving_.push_back(&mover_of(trees, now));
     for (const Index t : trees) of_tree_[z(t)] = moving_.back();
   }
@@ -79,7 +84,10 @@ template <class T> void IslandsPath<T>::deal(Moment<T>& now) {
     m.at.push_back(row);
     row += s.directions;
   }
-  for (const auto& impulse : now.state->impulses) of_tree_[z(tree_of(impulse.of))]->state.impulses.push_back(impulse);
+  for (const auto& impulse : now.state->impulses) {
+    Mover* const m = of_tree_[z(tree_of(impulse.of))];
+    (m != nullptr ? m->state.impulses : kept_).push_back(impulse);
+  }
 }
 
 template <class T> Index IslandsPath<T>::tree_of(const Identity& of) const {
@@ -116,7 +124,9 @@ template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX
   impulses = VectorX<T>::Constant(rows, T(0));
   StepReport out;
   out.path = "free";
+  moved_ = 0;
   for (Mover* m : moving_) {
+    ++moved_;
     const StepReport r = move(*m, now, change, impulses);
     if (r.rows > 0 && out.path != "cones") out.path = r.path;
     out.rows += r.rows, out.islands += r.islands, out.iterations += r.iterations;
@@ -128,13 +138,17 @@ template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX
 }
 
 template <class T> void IslandsPath<T>::remember(const Moment<T>&, State<T>& next) {
-  next.impulses.clear();
+  next.impulses = kept_;
   State<T> own;
   for (const Mover* m : moving_) {
     m->path->remember(m->now, own);
     next.impulses.insert(next.impulses.end(), own.impulses.begin(), own.impulses.end());
   }
   std::sort(next.impulses.begin(), next.impulses.end(), [](const auto& a, const auto& b) { return a.of < b.of; });
+}
+
+template <class T> void IslandsPath<T>::problems(const typename Path<T>::Visit& visit) const {
+  for (std::size_t k = 0; k < moved_; ++k) moving_[k]->path->problems(visit);
 }
 
 template <class T> Index IslandsPath<T>::bytes() const {

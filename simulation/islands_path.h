@@ -2,6 +2,7 @@
 //
 //   islands   trees joined by rows that always hold and by the contacts of the step (islands.h)
 //   each      its own problem, solvers and end of iteration: free, equations or cones
+// What rests (Moment::resting) has no rows and is no island; its impulses are kept.
 // Bits     of an island are those of a scene that holds nothing else.
 // What is rejoined are changes of velocities and impulses, in the order of the whole. The factor of rows that always hold is there for
 // who closes their drift, whatever path was taken.
@@ -28,6 +29,7 @@ template <class T> class IslandsPath final : public Path<T> {
   [[nodiscard]] std::string_view name() const override { return name_; }
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
   void remember(const Moment<T>& now, State<T>& next) override;
+  void problems(const typename Path<T>::Visit& visit) const override;
   [[nodiscard]] Index bytes() const override;
 
   /// Trees joined by rows that always hold.
@@ -65,8 +67,10 @@ template <class T> class IslandsPath final : public Path<T> {
   std::vector<Loops> loops_;
   std::vector<Index> loops_of_;  // per tree, −1: no rows
   std::map<std::vector<Index>, std::unique_ptr<Mover>> movers_;
+  std::size_t moved_ = 0;        // how many of those moving were asked in the last step
   std::vector<Mover*> moving_;   // in the order of their first trees
-  std::vector<Mover*> of_tree_;
+  std::vector<Mover*> of_tree_;  // null: at rest
+  std::vector<typename State<T>::Impulse> kept_;  // of what is at rest
 };
 
 }  // namespace delassus::simulation

@@ -6,12 +6,14 @@
 // order h.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "algorithms/dynamics/tree_operators.h"
 #include "algorithms/factors/factor.h"
 #include "algorithms/operators/operators.h"
+#include "simulation/contact_problem.h"
 #include "simulation/terms.h"
 
 namespace delassus::simulation {
@@ -39,6 +41,9 @@ template <class T> class Path {
   virtual StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) = 0;
   /// What of the last step the next one starts from.
   virtual void remember(const Moment<T>&, State<T>&) {}
+  /// The contact problems of the last step, in the order of their islands; a step that failed ends with the one that was not solved.
+  using Visit = std::function<void(const ContactProblem<double>& problem, bool solved)>;
+  virtual void problems(const Visit&) const {}
   [[nodiscard]] virtual Index bytes() const = 0;
 };
 

@@ -41,7 +41,7 @@ template <class T> void check_closed(const Scene& scene, const Plan<T>& plan) {
 
 }  // namespace
 
-template <class T> Plan<T>::Plan(const Scene& scene, const Settings& settings) {
+template <class T> Plan<T>::Plan(const Scene& scene, const Settings& settings) : step(settings.step) {
   const std::vector<EffectRow>& table = *settings.table;
   for (const std::string& name : settings.without) (void)find_effect(name, table);
   for (const EffectRow& row : table) {
@@ -85,8 +85,8 @@ template <class T> void Plan<T>::make_path(const Scene& scene, const Settings& s
     return std::make_shared<FreePath<T>>(s);
   };
   std::vector<ClosedTogether<T>> loops;
-  if (!settings.together && Islands(*structure).trees() > 1 && (cones || structure->rows > 0)) {
-    auto islands = std::make_shared<IslandsPath<T>>(cones ? "cones" : "equations", structure, damping, way, equations_of);
+  if (!rests.empty() || (!settings.together && Islands(*structure).trees() > 1 && (cones || structure->rows > 0))) {
+    auto islands = std::make_shared<IslandsPath<T>>(cones ? "cones" : structure->rows > 0 ? "equations" : "free", structure, damping, way, equations_of);
     for (const auto& l : islands->loops()) loops.push_back({l.path.get(), l.part.bodies, l.part.rows});
     path = std::move(islands);
   } else {

@@ -5,7 +5,7 @@
 //            none                  ABA alone: no Jacobian, no solver
 //            equations only        one solve of the pair (ν, λ) by an operator, the ladder unless another is named
 //            cones                 a contact problem for a solver; where a step has no such row, one of the above
-//          Where there are several trees and any rows, every island goes its own way (islands_path.h).
+//          Where there are several trees and any rows, or where something may rest, every island goes its own way (islands_path.h).
 #pragma once
 
 #include <memory>
@@ -48,6 +48,7 @@ template <class T> class Plan {
   /// @throws ModelError for an effect that does not exist, for a scene whose equations are not satisfied where it starts.
   Plan(const Scene& scene, const Settings& settings);
 
+  double step;                       ///< h [s]
   Model model;                       ///< bodies without armature (an effect brings it), constraints that always hold
   std::vector<Index> constraint_of;  ///< per constraint of `model`: its index in the scene
   Damping<double> damping;           ///< R⁻¹ of its rows
@@ -58,6 +59,7 @@ template <class T> class Plan {
   std::vector<DetectionTerm<T>*> detections;
   std::vector<RowsTerm<T>*> rows;
   std::vector<EventTerm<T>*> events;
+  std::vector<RestTerm<T>*> rests;
   std::shared_ptr<Path<T>> path;
 
   /// For the rows of the table: takes an effect and enters it in the lists of what it is.
@@ -69,6 +71,7 @@ template <class T> class Plan {
     enter<DetectionTerm<T>>(&e, detections, "detection");
     enter<RowsTerm<T>>(&e, rows, "rows");
     enter<EventTerm<T>>(&e, events, "event");
+    enter<RestTerm<T>>(&e, rests, "rest");
     if (now_ != nullptr) now_->bytes += e.bytes();
     owners_.push_back(std::move(owned));
     return e;

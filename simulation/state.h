@@ -23,6 +23,15 @@ template <class T> struct State {
   VectorX<T> nu;           ///< velocities at q, floating joints in body axes (docs/conventions.md)
   std::vector<Impulse> impulses;
   double trial = 0;        ///< the next step that error control tries [s]; 0 without it
+
+  /// Of a tree, where sleeping is called for.
+  struct Rest {
+    std::int64_t quiet = 0;  ///< steps, as far as they count
+    Index island = -1;       ///< it sleeps in; −1: awake
+    bool known = false;      ///< its forces are in rest_force
+  };
+  std::vector<Rest> rest;
+  VectorX<T> rest_force;  ///< n, of what sleeps [N m or N]
 };
 
 /// q ⊕ h ν⁺ and ν⁺ in the axes of the new configuration.

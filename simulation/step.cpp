@@ -9,13 +9,13 @@
 namespace delassus::simulation {
 namespace {
 
-/// Rows in cones, by the names of the effects that bring them, and rows that give way: explicit methods take neither.
+/// Rows in cones and sleep, by the names of the effects that bring them, and rows that give way: explicit methods take neither.
 template <class T> void check_rows(const Scene& scene, const Plan<T>& plan, const IntegratorRow& integrator) {
   std::string brings;
   for (const PlanLine& line : plan.lines)
-    if (line.in && line.effect->holds == nullptr && line.terms.find("rows") != std::string::npos) brings += (brings.empty() ? "" : ", ") + std::string(line.effect->name);
+    if (line.in && line.effect->holds == nullptr && (line.terms.find("rows") != std::string::npos || line.terms.find("rest") != std::string::npos)) brings += (brings.empty() ? "" : ", ") + std::string(line.effect->name);
   if (!brings.empty() && integrator.takes != Takes::cones)
-    throw ModelError(scene.file, "integrator " + std::string(integrator.name), "steps no scene with rows in cones, which are brought by: " + brings,
+    throw ModelError(scene.file, "integrator " + std::string(integrator.name), "steps no scene with rows in cones or sleep, which are brought by: " + brings,
                      "euler, without an accuracy of its steps; or a scene without them: --without leaves an effect out");
   if (integrator.takes == Takes::cones) return;
   const auto soft = std::find_if(plan.damping.diagonal.begin(), plan.damping.diagonal.end(), [](double x) { return x != 0; });
@@ -62,7 +62,9 @@ Simulation<T>::Simulation(const Scene& scene, const Settings& settings)
 
 template <class T> void Simulation<T>::restore(const State<T>& state) {
   require(state.q.size() == state_.q.size() && state.nu.size() == state_.nu.size(), "Simulation: the state is another model's");
+  require(state.rest.empty() || plan_.rests.empty() || state.rest_force.size() == state_.nu.size(), "Simulation: the state is another model's");
   state_ = state;
+  for (auto* term : plan_.rests) term->look();
 }
 
 template <class T> void Simulation<T>::gather() {
@@ -75,8 +77,21 @@ template <class T> void Simulation<T>::gather() {
   for (auto* term : plan_.rows) term->add_rows(now_);
 }
 
+/// A step in which nothing moves.
+template <class T> const StepReport& Simulation<T>::still() {
+  rows_.clear();
+  impulses_.resize(0);
+  change_.setConstant(T(0));
+  report_ = {};
+  report_.path = "asleep";
+  ++state_.steps;
+  return report_;
+}
+
 template <class T> const StepReport& Simulation<T>::euler() {
   now_.state = &state_;
+  for (auto* term : plan_.rests)
+    if (term->rests(now_)) return still();
   gather();
   report_ = plan_.path->velocities(now_, change_, impulses_);
   if (!report_.ok()) return report_;

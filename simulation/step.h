@@ -45,6 +45,7 @@ template <class T> class Simulation {
  private:
   void gather();  // numbers and terms at now_.state
   const StepReport& euler();
+  const StepReport& still();
   const StepReport& runge_kutta();
   const StepReport& controlled();
   bool accelerations(const State<T>& at, VectorX<T>& out);

@@ -6,6 +6,7 @@
 //   detection   which rows there are now
 //   rows        rows with a cone, a target, a coefficient
 //   event       what happens between two steps
+//   rest        whether there is anything to do at all
 #pragma once
 
 #include "algorithms/mechanism/mechanism.h"
@@ -33,6 +34,8 @@ template <class T> class Moment {
     double R_inverse;  ///< [1/kg]
   };
   std::vector<Touching> touching;  ///< detection terms add to it
+  const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: 1 where it is not moved; null: all move
+  const std::vector<Index>* island = nullptr;          ///< per tree: the first tree of its island in this step; of islands_path.h
   double drift = 0, left = 0;      ///< largest |φ| of equations after the step, and after closing [m or rad]
 
   /// Frames of the bodies; computed when the first term asks.
@@ -75,6 +78,14 @@ template <class T> struct EventTerm {
   virtual ~EventTerm() = default;
   /// After the step: `next` is its end.
   virtual void after(Moment<T>& now, State<T>& next) = 0;
+};
+
+template <class T> struct RestTerm {
+  virtual ~RestTerm() = default;
+  /// Before anything else: says what rests; whether all does, and the step is nothing.
+  virtual bool rests(Moment<T>& now) = 0;
+  /// The state is another one.
+  virtual void look() = 0;
 };
 
 /// Owner of terms: what a row of the table of effects makes.

@@ -38,6 +38,7 @@ void never_written(const std::string& effect, Scene& s) {
   if (effect == "torsional friction") s.motion.torsional_friction = 0;
   if (effect == "rolling friction") s.motion.rolling_friction = 0;
   if (effect == "restitution") s.motion.restitution = 0;
+  if (effect == "sleeping") s.motion.sleeping = {};
   if (effect == "loops") drop([](const Constraint& c) { return c.loop; });
 }
 
@@ -48,7 +49,7 @@ const std::map<std::string, std::function<Scene()>>& callers() {
       {"armature", everything_smooth}, {"couplings", everything_smooth},         {"joint locks", everything_smooth},
       {"joint limits", stopped_pendulum}, {"joint friction", stopped_pendulum},
       {"collision detection", thrown_box}, {"contacts", thrown_box}, {"contact friction", thrown_box}, {"restitution", thrown_box},
-      {"torsional friction", thrown_ball}, {"rolling friction", thrown_ball},
+      {"torsional friction", thrown_ball}, {"rolling friction", thrown_ball}, {"sleeping", resting_box},
       {"loops", [] { return slider_crank(0.3, 0.8, 0.4, 5); }}};
   return all;
 }

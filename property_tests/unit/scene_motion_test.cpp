@@ -17,7 +17,7 @@ TEST(SceneMotion, keys_are_read) {
   const Scene s = with(", base: free, velocities: {j2: 0.5}, velocity: {linear: [0, 0, -1]}",
                        "springs: [{joint: r/j1, stiffness: 3, rest: 0.25, damping: 0.5}]\nmotors:\n  - {joint: r/j2, torque: -0.5, target: 1, stiffness: 2, damping: 4}\n"
                        "  - {joint: r/j3, torque: 9, effort: 2}\nwrenches: [{of: crate, force: [1, 2, 3], at: [0.5, 0, 0]}]\nground: {z: 0}\n"
-                       "contacts: {detect: true, margin: 0.01, friction: 0.25, torsional_friction: 0.02, rolling_friction: 0.003, restitution: 0.5, damping: 1e-3}\n");
+                       "contacts: {detect: true, margin: 0.01, friction: 0.25, torsional_friction: 0.02, rolling_friction: 0.003, restitution: 0.5, damping: 1e-3}\nsleeping: {linear: 0.01, angular: 0.02, after: 0.5}\n");
   const SceneMotion& m = s.motion;
   const Index crate = s.model.find("crate"), j2 = s.model.find("r/coupler");
   ASSERT_EQ(m.nu.size(), s.model.dofs());
@@ -38,6 +38,7 @@ TEST(SceneMotion, keys_are_read) {
   EXPECT_TRUE(m.wrenches[0].force == Vector3<double>(1, 2, 3));
   EXPECT_TRUE(m.detects);
   EXPECT_EQ(m.search.margin, 0.01); EXPECT_EQ(m.friction, 0.25); EXPECT_EQ(m.restitution, 0.5); EXPECT_EQ(m.contact_damping, 1e-3);
+  EXPECT_EQ(m.sleeping.linear, 0.01); EXPECT_EQ(m.sleeping.angular, 0.02); EXPECT_EQ(m.sleeping.after, 0.5);
   EXPECT_EQ(m.torsional_friction, 0.02); EXPECT_EQ(m.rolling_friction, 0.003);
   EXPECT_EQ(m.search.object.size(), s.model.bodies.size());
 }
@@ -47,6 +48,7 @@ TEST(SceneMotion, nothing_said_is_nothing) {
   EXPECT_EQ(s.motion.nu.size(), 0);
   EXPECT_TRUE(s.motion.springs.empty() && s.motion.motors.empty() && s.motion.wrenches.empty());
   EXPECT_EQ(s.motion.restitution, 0);
+  EXPECT_LT(s.motion.sleeping.linear, 0);
 }
 
 TEST(SceneMotion, what_is_wrong_is_refused_with_its_line) {
@@ -70,6 +72,8 @@ TEST(SceneMotion, what_is_wrong_is_refused_with_its_line) {
   refused("", "wrenches: [{of: crate, force: [1, 0]}]\n", {"force"});
   refused("", "ground: {z: 0}\ncontacts: {detect: true, restitution: 1.5}\n", {"moving.yaml:6", "1.5 is above 1"});
   refused("", "ground: {z: 0}\ncontacts: {detect: true, rolling_friction: -0.1}\n", {"moving.yaml:6", "rolling_friction", "-0.1"});
+  refused("", "sleeping: {linear: 0.1, after: 1}\n", {"moving.yaml:5", "angular is missing"});
+  refused("", "sleeping: {linear: -0.1, angular: 1, after: 1}\n", {"moving.yaml:5", "linear", "-0.1"});
   refused("", "ground: {z: 0}\ncontacts: {detect: true, torsion: 0.1}\n", {"moving.yaml:6", "torsion", "torsional_friction"});
 }
 

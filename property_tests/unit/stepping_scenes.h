@@ -191,6 +191,17 @@ inline Scene thrown_ball() {
   return s;
 }
 
+/// A cube on the ground that falls asleep in the fifth step.
+inline Scene resting_box() {
+  Model m;
+  m.add(box("cube", 2, {0.1, 0.1, 0.1}));
+  Scene s = on_the_ground(std::move(m), {0, 0, -9.81}, 0.5);
+  s.q[2] = 0.1;
+  s.motion.nu[3] = 1e-3;
+  s.motion.sleeping = {0.01, 0.01, 5e-3};
+  return s;
+}
+
 template <class T> using StepPlan = simulation::Plan<T>;
 
 }  // namespace delassus::stepping

@@ -65,6 +65,7 @@ template <class T> void Detection<T>::look_ahead(Moment<T>& now, const Poses<dou
 template <class T> void Detection<T>::detect(Moment<T>& now) {
   const Poses<double> at = in_double(now.poses());
   look_ahead(now, at);
+  search_.resting = now.resting;
   notes_.clear();
   for (ContactPoint p : find_contacts(*now.model, at, search_, notes_)) {
     if (p.friction < 0 || (p.other == ground && ground_friction_ >= 0)) p.friction = ground_friction_;
