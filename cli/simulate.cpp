@@ -9,6 +9,7 @@
 #include "algorithms/errors/message.h"
 #include "bench/plot.h"
 #include "bench/text.h"
+#include "cli/capture.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/simulate_explain.h"
@@ -24,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Options {
-  std::string scene, duration = "1s", record, plot;
+  std::string scene, duration = "1s", record, plot, capture;
   bool as_json = false, explain = false;
   std::optional<double> gravity;
   std::int64_t every = 0;  ///< 0: every step, or 60 pictures a second
@@ -48,6 +49,8 @@ struct Ran {
   std::int64_t steps = 0;
   double seconds = 0;           ///< of stepping alone
   simulation::StepReport last;
+  std::int64_t problems = 0;               ///< written
+  std::vector<std::string> unsolved;       ///< files of what no solver could do
   Index most_rows = 0, most_islands = 0;
   std::int64_t iterations = 0, taken = 0, rejected = 0;
   double residual = 0, drift = 0, left = 0, error = 0;
@@ -97,6 +100,7 @@ Ran run_scene(const Options& o, const Scene& scene) {
     const auto& r = s.step();
     const auto end = Clock::now();
     out.seconds += std::chrono::duration<double>(end - start).count();
+    if (!o.capture.empty() && r.ok() && (out.steps + 1) % every == 0) out.problems += static_cast<std::int64_t>(capture(o.capture, scene, s, true).size());
     if (!r.ok()) break;
     ++out.steps;
     out.most_rows = std::max(out.most_rows, r.rows);
@@ -117,6 +121,11 @@ Ran run_scene(const Options& o, const Scene& scene) {
   }
   if (tells) std::fprintf(stderr, "\r%60s\r", "");
   out.last = s.last();
+  try {
+    if (!out.last.ok()) out.unsolved = capture(o.capture.empty() ? "." : o.capture, scene, s, false);
+  } catch (const ModelError& e) {
+    std::fprintf(stderr, "%s\n", e.what());  // what was computed is still to be written
+  }
   out.end = observe(s.state());
   return out;
 }
@@ -172,7 +181,7 @@ json ran_json(const Options& o, const Scene& scene, const Ran& r) {
   json out = {{"scene", scene.name}, {"step", o.settings.step}, {"steps", r.steps}, {"time", static_cast<double>(r.steps) * o.settings.step},
           {"seconds", r.seconds}, {"begin", energy_json(r.begin)}, {"end", energy_json(r.end)}, {"most_rows", r.most_rows}, {"most_islands", r.most_islands},
           {"iterations", r.iterations}, {"residual", r.residual}, {"drift", r.drift}, {"left", r.left}, {"path", r.last.path},
-          {"status", name(r.last.report.status)}, {"message", r.last.message}, {"interrupted", interrupted()}};
+          {"status", name(r.last.report.status)}, {"message", r.last.message}, {"captured", r.problems}, {"unsolved", r.unsolved}, {"interrupted", interrupted()}};
   if (o.settings.error > 0) out["error_control"] = {{"accuracy", o.settings.error}, {"largest", r.error}, {"taken", r.taken}, {"rejected", r.rejected}};
   return out;
 }
@@ -191,6 +200,8 @@ void print_ran(const Options& o, const Ran& r) {
     std::printf("rows      at most %lld, in at most %lld island%s; solver %.1f iterations a step, residual at most %.2g m/s\n", static_cast<long long>(r.most_rows),
                 static_cast<long long>(r.most_islands), r.most_islands == 1 ? "" : "s",
                 r.steps ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0, r.residual);
+  if (r.problems > 0) std::printf("captured  %lld contact problems in %s\n", static_cast<long long>(r.problems), o.capture.c_str());
+  for (const std::string& file : r.unsolved) std::printf("unsolved  %s: the problem that no solver could do; docs/solvers.md says how to replay it\n", file.c_str());
   if (!r.last.ok())
     std::printf("ended     at step %lld: %s%s%s\n", static_cast<long long>(r.steps) + 1, std::string(name(r.last.report.status)).c_str(), r.last.message.empty() ? "" : "; ", r.last.message.c_str());
 }
@@ -212,6 +223,7 @@ int simulate(const Options& o) {
   }
   check_writable("--record", o.record);
   check_writable("--plot", o.plot);
+  if (!o.capture.empty()) check_folder(o.capture);
   const Ran ran = run_scene(o, scene);
   record(o, scene, ran);
   draw(o, ran);
@@ -236,6 +248,7 @@ void add_simulate(options::Command& app, Run& run) {
   c->add_option("--record", o->record, "FILE.csv or FILE.json: q, ν, energies, rows, residual and drift of every step; FILE.html: a page that plays the run");
   c->add_option("--every", o->every, "record every so many steps (default: 1; 60 a second for a page)")->check(options::whole(1));
   c->add_option("--plot", o->plot, "FILE.svg: energies over time");
+  c->add_option("--capture", o->capture, "FOLDER: every contact problem of every step (or as --every says) as a file that replays; what no solver could do is always written");
   c->add_flag("--explain", o->explain, "do not run: per effect called for by which line, or skipped and why; bytes, operations a step");
   c->add_option("--without", o->settings.without, "an effect that is left out (see `delassus list effects`); may be repeated");
   c->add_flag("--everything", o->settings.everything, "all effects, also those that provably vanish");

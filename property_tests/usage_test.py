@@ -166,7 +166,7 @@ printed([delassus, "list", "solvers", "--json"], "newton_convex", "exact Coulomb
 # A scene that moves.
 hammer = pathlib.Path(__file__).parent.parent / "docs/hammer.yaml"
 printed([delassus, "simulate", hammer, "--duration", "0.02"], "20 steps of 0.001 s", "drift", "residual")
-printed([delassus, "simulate", hammer, "--explain"], "hammer.yaml:2", "no joint has armature", "path cones")
+printed([delassus, "simulate", hammer, "--explain"], "hammer.yaml:2", "no joint has armature", "path cones", "islands with rows")
 printed([delassus, "simulate", hammer, "--explain", "--without", "contacts"], "left out", "nothing to act on without contacts", "path equations")
 refused([delassus, "simulate", hammer, "--without", "contact"], "contact", "did you mean contacts?")
 moving = pathlib.Path(__file__).parent.parent / "docs/moving"
@@ -198,6 +198,16 @@ with tempfile.TemporaryDirectory() as folder:
     page = pathlib.Path(files[2]).read_text()
     if "http" in page or '"frames":[' not in page:
         failures.append("simulate --record run.html: no recording in it, or it names something elsewhere")
+    if ",islands," not in pathlib.Path(files[0]).read_text().splitlines()[0]:
+        failures.append("simulate --record: no column of islands")
+    kept = pathlib.Path(folder) / "problems"
+    printed([delassus, "simulate", hammer, "--duration", "0.02", "--every", "10", "--capture", str(kept)], "20 steps", "captured")
+    if not list(kept.glob("hammer_step_20_*.dat")) or list(kept.glob("hammer_step_1_*.dat")) or list(kept.glob("*unsolved*")):
+        failures.append(f"simulate --capture: {sorted(f.name for f in kept.iterdir())}")
+    done = run(delassus, "simulate", hammer, "--duration", "0.02", "--residual", "0", "--solver", "pgs", "--capture", str(kept))
+    if done.returncode != 1 or "_unsolved.dat: the problem that no solver could do" not in done.stdout or len(list(kept.glob("*unsolved.dat"))) != 1:
+        failures.append(f"simulate: no file of the problem that was not solved: {done.returncode} {done.stdout}")
+    refused([delassus, "simulate", hammer, "--duration", "0.01", "--capture", files[0]], "--capture", "is no folder")
     refused([delassus, "simulate", hammer, "--duration", "0.01", "--record", str(pathlib.Path(folder) / "none" / "a.csv")], "--record", "cannot be written")
 
 print("\n".join(failures) or "every command line is refused with its reason")
