@@ -60,35 +60,43 @@ void least_inside(const Axis& a, std::vector<double>& out) {
 std::vector<ShapeContact> capsule_box(const Vector3<double>& centre, const Vector3<double>& half_axis, double radius, const PlacedBox& box, double margin) {
   const Pose<double> to_box = box.placement.inverse();
   const Axis axis{to_box * centre, to_box.rotation * half_axis, box.half};
-  const auto contact = [&](double s) { return sphere_box(centre + s * half_axis, radius, box); };
-
+  struct Candidate {
+    double s;
+    bool outermost;  // an end or a crossing
+    ShapeContact contact;
+  };
+  std::vector<Candidate> candidates;
+  const auto take = [&](const std::vector<double>& of, bool outermost) {
+    for (const double s : of) candidates.push_back({s, outermost, sphere_box(centre + s * half_axis, radius, box)});
+  };
   const std::vector<double> outermost = crossings(axis);
-  std::vector<double> candidates = outermost;
-  least_outside(axis, outermost, candidates);
-  least_inside(axis, candidates);
-  std::sort(candidates.begin(), candidates.end());
-  double least = contact(0).gap;
-  for (const double s : candidates) least = std::min(least, contact(s).gap);
+  std::vector<double> inner;
+  least_outside(axis, outermost, inner);
+  least_inside(axis, inner);
+  take(outermost, true);
+  take(inner, false);
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.s < b.s; });
+  double least = candidates[0].contact.gap;
+  for (const Candidate& c : candidates) least = std::min(least, c.contact.gap);
+  if (least > margin) return {};
 
   // What differs by less than a millionth of the axis is the same place and the same depth: rounding decides nothing.
-  const double same = 1e-6, lead = same * half_axis.norm();
-  const auto ends_of = [&](const std::vector<double>& of, double gap) -> std::vector<double> {
-    const auto near = [&](double s) { return contact(s).gap <= gap; };
-    const auto first = std::find_if(of.begin(), of.end(), near);
-    const auto last = std::find_if(of.rbegin(), of.rend(), near);
-    return first == of.end() ? std::vector<double>{} : std::vector<double>{*first, *last};
+  const double same = 1e-6, deepest = least + same * half_axis.norm();
+  std::vector<const Candidate*> kept;
+  const auto keep_ends = [&](const auto& takes) {
+    const auto first = std::find_if(candidates.begin(), candidates.end(), takes);
+    const auto last = std::find_if(candidates.rbegin(), candidates.rend(), takes);
+    if (first != candidates.end()) kept.insert(kept.end(), {&*first, &*last});
   };
-  if (least > margin) return {};
-  std::vector<double> kept = ends_of(outermost, margin);
-  const bool deeper = std::none_of(kept.begin(), kept.end(), [&](double s) { return contact(s).gap <= least + lead; });
-  if (deeper)
-    for (const double s : ends_of(candidates, least + lead)) kept.push_back(s);
-  std::sort(kept.begin(), kept.end());
+  keep_ends([&](const Candidate& c) { return c.outermost && c.contact.gap <= margin; });
+  if (std::none_of(kept.begin(), kept.end(), [&](const Candidate* c) { return c->contact.gap <= deepest; }))
+    keep_ends([&](const Candidate& c) { return c.contact.gap <= deepest; });
+  std::sort(kept.begin(), kept.end(), [](const Candidate* a, const Candidate* b) { return a->s < b->s; });
   std::vector<ShapeContact> out;
   double before = -2;
-  for (const double s : kept) {
-    if (s - before > same) out.push_back(contact(s));
-    before = s;
+  for (const Candidate* c : kept) {
+    if (c->s - before > same) out.push_back(c->contact);
+    before = c->s;
   }
   return out;
 }

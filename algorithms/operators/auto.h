@@ -1,8 +1,8 @@
 // auto: the rows that choose() names, explicit or matrix-free, behind one operator.
 //
 // What     A f by one row of the table and A⁻¹ a by another, or both by one that keeps a matrix, chosen once in analyze from the
-//          structure and from what is expected at one configuration: Demand, of the constructor. The row of the table expects
-//          `expected` products and certified solves of one column each.
+//          structure and from what is expected at one configuration: Demand, of the constructor; without one, `expected` products
+//          and certified solves of one column each. Not a row of the table: it computes nothing.
 // Formula  that of the chosen rows, bit for bit: nothing is computed here.
 // Singular as the chosen rows: what is wrong with products is said by update and by apply, what is wrong with solves by solve.
 // Cost     choose.h (`delassus bench --choose` against the fastest row), and one more check of
