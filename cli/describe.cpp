@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <new>
 
+#include "algorithms/dynamics/spectrum.h"
 #include "algorithms/factors/plan.h"
 #include "bench/scene_facts.h"
 #include "bench/text.h"
@@ -87,13 +88,24 @@ json assembly_json(const Scene& scene) {
   return out;
 }
 
+/// {largest, smallest: {lower, upper}} of the eigenvalues of Λ⁻¹, to a part in a thousand; null without rows, or where M is singular.
+json spectrum_json(const Scene& scene) {
+  const Problem<double> problem = problem_of(scene);
+  if (problem.structure->rows == 0) return nullptr;
+  Spectrum<double> spectrum(problem.structure);
+  Spectrum<double>::Interval largest, smallest;
+  if (!spectrum.update(problem).ok() || !spectrum.largest(1e-3, largest).ok() || !spectrum.smallest(1e-3, smallest).ok()) return nullptr;
+  const auto interval = [](const Spectrum<double>::Interval& i) { return json{{"lower", i.lower}, {"upper", i.upper}}; };
+  return {{"largest", interval(largest)}, {"smallest", interval(smallest)}};
+}
+
 json describe_json(const Scene& scene) {
   const auto structure = structure_of(scene.model);
   const bench::SceneResult facts = bench::facts_of(scene, false);
   json j = {{"scene", scene.name}, {"bodies", facts.bodies}, {"dof", facts.dofs}, {"rows", facts.rows},
             {"trees", facts.trees}, {"summary", facts.summary}, {"constraints", constraints_json(scene.model)}, {"configuration", configuration_json(scene)},
             {"robots", robots_json(scene)}, {"damping", damping_json(scene.damping)}, {"effects", effects_json(scene)}, {"notes", facts.notes},
-            {"warnings", warnings_json(scene)},
+            {"eigenvalues", spectrum_json(scene)}, {"warnings", warnings_json(scene)},
             {"provisional_pose", scene.provisional_pose},
             {"elimination", {{"M", plan_json(scene, *structure, Matrix::M)}, {"M_R", plan_json(scene, *structure, Matrix::M_R)}}},
             {"operators", operators_json(structure)}};
@@ -111,6 +123,15 @@ std::string some(const json& list, std::size_t most) {
 }
 
 void print_line(const char* key, const std::string& value) { std::printf("%-18s %s\n", key, value.c_str()); }
+
+void print_spectrum(const json& s) {
+  if (s.is_null()) return;
+  const auto number = [&](const char* which, const char* end) { return s[which][end].get<double>(); };
+  print_line("eigenvalues", number("smallest", "lower") > 0
+      ? bench::format("of Λ⁻¹, %.4g to %.4g: condition number at most %.3g", number("smallest", "lower"), number("largest", "upper"),
+                      number("largest", "upper") / number("smallest", "lower"))
+      : bench::format("of Λ⁻¹, from not told from 0 (at most %.1e) to %.4g: rows depend on others, or nearly", number("smallest", "upper"), number("largest", "upper")));
+}
 
 constexpr std::size_t most_lines = 24;
 
@@ -165,6 +186,7 @@ void print_text(const json& j, const Model& model, bool joints_too) {
   print_line("rows", j["rows"].dump() + ": " + j["summary"].get<std::string>());
   print_rows(j["constraints"], model);
   print_line("damping [1/kg]", j["damping"].is_array() ? "per row (--json lists it)" : j["damping"].dump());
+  print_spectrum(j["eigenvalues"]);
   if (j["loops"]["any"].get<bool>()) {
     print_line("loops", bench::format("largest closure error %.2e after %d steps of assembly, %.2e before [m or rad]",
                                       j["loops"]["residual"].get<double>(), j["loops"]["steps"].get<int>(),

@@ -210,5 +210,9 @@ with tempfile.TemporaryDirectory() as folder:
     refused([delassus, "simulate", hammer, "--duration", "0.01", "--capture", files[0]], "--capture", "is no folder")
     refused([delassus, "simulate", hammer, "--duration", "0.01", "--record", str(pathlib.Path(folder) / "none" / "a.csv")], "--record", "cannot be written")
 
+for script in sorted((pathlib.Path(__file__).parents[1] / "scripts").iterdir()):
+    if not script.suffix:
+        printed([script, "--help"], f"scripts/{script.name}" if script.name != "setup" else "packages")
+
 print("\n".join(failures) or "every command line is refused with its reason")
 sys.exit(1 if failures else 0)

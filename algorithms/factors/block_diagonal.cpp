@@ -35,6 +35,13 @@ template <class T> void BlockDiagonal<T>::set_off(T* dense, Index row, Index cou
   }
 }
 
+template <class T> void BlockDiagonal<T>::assign(const T& weight) {
+  std::fill(has_dense_.begin(), has_dense_.end(), 0);
+  std::fill(diagonal_.begin(), diagonal_.end(), weight);
+  off_.clear();
+  any_dense_ = false;
+}
+
 template <class T> void BlockDiagonal<T>::assign(const Damping<T>& damping) {
   std::fill(has_dense_.begin(), has_dense_.end(), 0);
   std::copy(damping.diagonal.begin(), damping.diagonal.end(), diagonal_.begin());

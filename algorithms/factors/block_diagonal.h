@@ -15,6 +15,8 @@ namespace delassus {
 template <class T> class BlockDiagonal {
  public:
   void analyze(const Structure& structure);
+  /// Holds this weight times the identity.
+  void assign(const T& weight);
   /// Holds R⁻¹.
   void assign(const Damping<T>& damping);
   /// Holds R. Report: zero_damping with the first row whose damping is zero or whose block is singular.

