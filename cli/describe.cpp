@@ -130,7 +130,7 @@ void print_spectrum(const json& s) {
   print_line("eigenvalues", number("smallest", "lower") > 0
       ? bench::format("of Λ⁻¹, %.4g to %.4g: condition number at most %.3g", number("smallest", "lower"), number("largest", "upper"),
                       number("largest", "upper") / number("smallest", "lower"))
-      : bench::format("of Λ⁻¹, from not told from 0 (at most %.1e) to %.4g: rows depend on others, or nearly", number("smallest", "upper"), number("largest", "upper")));
+      : bench::format("of Λ⁻¹, up to %.4g; the least is not told from 0 (at most %.1e): rows depend on others, or nearly", number("largest", "upper"), number("smallest", "upper")));
 }
 
 constexpr std::size_t most_lines = 24;

@@ -16,7 +16,7 @@ sys.path.insert(0, HERE)
 import mutate  # noqa: E402
 
 PYTHON = [sys.executable, "property_tests/judges_test.py", "build/release"]
-UNIT = ["build/release/property_tests/unit_tests", "--gtest_brief=1", "--gtest_filter=Judges.*:Verdict.*:WrongDamping.*:Misuse.*:Where.*:damping.*:Reference*:Sensitivity.*:Generators.*"]
+UNIT = ["build/release/property_tests/unit_tests", "--gtest_brief=1", "--gtest_filter=Judges.*:Verdict.*:WrongDamping.*:Misuse.*:Where.*:damping.*:Reference*:Sensitivity.*:Generators.*:Spectrum.*"]
 BENCH = ["build/release/property_tests/bench_judges", "--gtest_brief=1"]
 # By folder: targets, and (test, its command, whether it must fail).
 TESTS = {
