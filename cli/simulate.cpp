@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string scene, duration = "1s", record, plot, capture;
-  bool as_json = false, explain = false;
+  bool as_json = false, as_markdown = false, explain = false;
   std::optional<double> gravity;
   std::int64_t every = 0;  ///< 0: every step, or 60 pictures a second
   simulation::Settings settings;
@@ -218,6 +218,7 @@ int simulate(const Options& o) {
   if (o.explain) {
     const json j = explain_json(scene, o.settings);
     if (o.as_json) std::printf("%s\n", j.dump(1).c_str());
+    else if (o.as_markdown) print_prices(j);
     else print_explain(j);
     return good;
   }
@@ -249,7 +250,8 @@ void add_simulate(options::Command& app, Run& run) {
   c->add_option("--every", o->every, "record every so many steps (default: 1; 60 a second for a page)")->check(options::whole(1));
   c->add_option("--plot", o->plot, "FILE.svg: energies over time");
   c->add_option("--capture", o->capture, "FOLDER: every contact problem of every step (or as --every says) as a file that replays; what no solver could do is always written");
-  c->add_flag("--explain", o->explain, "do not run: per effect called for by which line, or skipped and why; bytes, operations a step");
+  auto* const explain = c->add_flag("--explain", o->explain, "do not run: per effect called for by which line, or skipped and why; bytes, operations a step");
+  c->add_flag("--markdown", o->as_markdown, "the explanation as a table of prices of the effects that are in")->needs(explain);
   c->add_option("--without", o->settings.without, "an effect that is left out (see `delassus list effects`); may be repeated");
   c->add_flag("--everything", o->settings.everything, "all effects, also those that provably vanish");
   c->add_option("--solver", o->settings.solver, "of contacts, limits and dry friction: direct, newton_convex, proximal, admm, pgs; proximal, then admm, then pgs when left out")->check(options::one_of(solver_names()));

@@ -62,4 +62,11 @@ void print_explain(const json& j) {
               j["path"] == "cones" ? " beside those of the solver" : "", count(j["islands"]).c_str(), bench::short_bytes(j["bytes"]).c_str(), bench::short_bytes(j["path_bytes"]).c_str());
 }
 
+void print_prices(const json& j) {
+  std::printf("| effect | terms | bytes | operations |\n|---|---|---|---|\n");
+  for (const json& e : j["effects"])
+    if (e["in"].get<bool>()) std::printf("| %s | %s | %s | %s |\n", e["name"].get<std::string>().c_str(), e["terms"].get<std::string>().c_str(), e["bytes"].dump().c_str(), e["operations"].is_null() ? "–" : e["operations"].dump().c_str());
+  std::printf("| **a step** | path %s | %s | %s |\n", j["path"].get<std::string>().c_str(), j["bytes"].dump().c_str(), j["operations"].is_null() ? "–" : j["operations"].dump().c_str());
+}
+
 }  // namespace delassus::cli

@@ -10,5 +10,6 @@ namespace delassus::cli {
 /// step has less without it; null where a step fails, contact solvers not counted. Cost: some steps for each effect.
 [[nodiscard]] json explain_json(const Scene& scene, const simulation::Settings& settings);
 void print_explain(const json& j);
+void print_prices(const json& j);  ///< a table in Markdown of the effects that are in
 
 }  // namespace delassus::cli

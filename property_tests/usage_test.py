@@ -166,6 +166,8 @@ printed([delassus, "list", "solvers", "--json"], "newton_convex", "exact Coulomb
 # A scene that moves.
 hammer = pathlib.Path(__file__).parent.parent / "docs/hammer.yaml"
 printed([delassus, "simulate", hammer, "--duration", "0.02"], "20 steps of 0.001 s", "drift", "residual")
+printed([delassus, "simulate", hammer, "--explain", "--markdown"], "| contacts | detection, rows |", "| **a step** |")
+misspelt([delassus, "simulate", hammer, "--markdown"], "--markdown", "--explain")
 printed([delassus, "simulate", hammer, "--explain"], "hammer.yaml:2", "no joint has armature", "path cones", "islands with rows")
 printed([delassus, "simulate", hammer, "--explain", "--without", "contacts"], "left out", "nothing to act on without contacts", "path equations")
 refused([delassus, "simulate", hammer, "--without", "contact"], "contact", "did you mean contacts?")

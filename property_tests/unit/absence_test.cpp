@@ -1,11 +1,8 @@
 // What a scene does not call for has no bit, no operation, no byte in the run: the proofs, for every effect of the table.
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <map>
-
 #include "algorithms/kit/counted.h"
-#include "property_tests/unit/stepping_scenes.h"
+#include "property_tests/unit/absence.h"
 #include "simulation/effects/gravity.h"
 #include "simulation/effects/springs.h"
 
@@ -13,46 +10,6 @@ namespace delassus {
 namespace {
 
 using namespace stepping;
-
-/// The scene as if the key of an effect had never been written.
-void never_written(const std::string& effect, Scene& s) {
-  using Kind = Constraint::Kind;
-  const auto drop = [&](auto&& which) {
-    std::erase_if(s.model.constraints, which);
-    Index rows = 0;
-    for (const Constraint& c : s.model.constraints) rows += row_count(s.model, c);
-    s.damping = Damping<double>::uniform(rows, 0);
-  };
-  if (effect == "gravity") s.has_gravity = false, s.gravity.setZero();
-  if (effect == "wrenches") s.motion.wrenches.clear();
-  if (effect == "springs") s.motion.springs.clear();
-  if (effect == "motors") s.motion.motors.clear();
-  if (effect == "joint damping") for (Body& b : s.model.bodies) b.joint.damping.clear();
-  if (effect == "armature") for (Body& b : s.model.bodies) b.joint.armature.clear();
-  if (effect == "couplings") drop([](const Constraint& c) { return c.kind == Kind::coupling; });
-  if (effect == "joint locks") drop([](const Constraint& c) { return c.kind == Kind::joint_lock; });
-  if (effect == "joint limits") for (Body& b : s.model.bodies) b.joint.lower.clear(), b.joint.upper.clear();
-  if (effect == "joint friction") for (Body& b : s.model.bodies) b.joint.friction.clear();
-  if (effect == "collision detection" || effect == "contacts") s.motion.detects = false;
-  if (effect == "contact friction") s.ground_friction = -1;
-  if (effect == "torsional friction") s.motion.torsional_friction = 0;
-  if (effect == "rolling friction") s.motion.rolling_friction = 0;
-  if (effect == "restitution") s.motion.restitution = 0;
-  if (effect == "sleeping") s.motion.sleeping = {};
-  if (effect == "loops") drop([](const Constraint& c) { return c.loop; });
-}
-
-const std::map<std::string, std::function<Scene()>>& callers() {
-  static const std::map<std::string, std::function<Scene()>> all{
-      {"gravity", everything_smooth},  {"velocity products", everything_smooth}, {"wrenches", everything_smooth},
-      {"springs", everything_smooth},  {"joint damping", everything_smooth},     {"motors", everything_smooth},
-      {"armature", everything_smooth}, {"couplings", everything_smooth},         {"joint locks", everything_smooth},
-      {"joint limits", stopped_pendulum}, {"joint friction", stopped_pendulum},
-      {"collision detection", thrown_box}, {"contacts", thrown_box}, {"contact friction", thrown_box}, {"restitution", thrown_box},
-      {"torsional friction", thrown_ball}, {"rolling friction", thrown_ball}, {"sleeping", resting_box},
-      {"loops", [] { return slider_crank(0.3, 0.8, 0.4, 5); }}};
-  return all;
-}
 
 template <class T> const PlanLine& line_of(const StepPlan<T>& plan, const std::string& effect) {
   for (const PlanLine& line : plan.lines)
@@ -73,8 +30,7 @@ bool same_bits(const State<double>& a, const State<double>& b) { return a.q.size
 TEST(Absence, bits_and_operations_are_those_of_a_program_without_the_row) {
   for (const auto& [effect, make] : callers()) {
     const Scene scene = make();
-    std::vector<EffectRow> smaller = effects();
-    std::erase_if(smaller, [&](const EffectRow& row) { return row.name == effect; });
+    const std::vector<EffectRow> smaller = table_without(effect);
     ASSERT_EQ(smaller.size() + 1, effects().size());
     Settings without = step_of(1e-3), program = without;
     without.without = {effect};

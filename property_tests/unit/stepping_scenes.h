@@ -191,6 +191,24 @@ inline Scene thrown_ball() {
   return s;
 }
 
+/// The same, so slow that friction stops it at once.
+inline Scene creeping_ball() {
+  Scene s = thrown_ball();
+  s.motion.nu << 0, 1e-3, 1e-3, 1e-4, 0, 0;
+  return s;
+}
+
+/// A ball that comes to the ground in its third step, and bounces.
+inline Scene bouncing_ball() {
+  Model m;
+  m.add(ball("ball", 2, 0.1));
+  Scene s = on_the_ground(std::move(m), {0, 0, -9.81}, 0);
+  s.q[2] = 0.1025;
+  s.motion.nu[5] = -1;
+  s.motion.restitution = 0.5;
+  return s;
+}
+
 /// A cube on the ground that falls asleep in the fifth step.
 inline Scene resting_box() {
   Model m;
