@@ -59,6 +59,8 @@ Scene swimmer(Index links) {
     s.frames.emplace(s.model.bodies.back().name, Frame{i, {}});
   }
   s.assembly.q = s.q;
+  s.motion.nu = VectorX<double>::Zero(links + 2);  // a wave of two lengths along it
+  for (Index k = 1; k < links; ++k) s.motion.nu[k + 2] = bend * std::cos(4 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(links));
   s.damping = Damping<double>::uniform(6 * links, 1e-4);
   return s;
 }
