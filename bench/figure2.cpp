@@ -99,9 +99,7 @@ std::string figure2_picture(const Figure2& f, bool solves) {
 }
 
 void to_json(json& j, const Figure2& f) {
-  const Machine& m = f.machine;
-  j = {{"machine", {{"processor", m.processor}, {"cores", m.cores}, {"system", m.system}, {"compiler", m.compiler}, {"flags", m.flags}, {"revision", m.revision}, {"date", m.date}}},
-       {"longest_seconds", f.longest}, {"most_bytes", f.most_bytes}, {"swimmers", json::array()}};
+  j = {{"machine", f.machine}, {"longest_seconds", f.longest}, {"most_bytes", f.most_bytes}, {"swimmers", json::array()}};
   for (const SwimmerSize& s : f.sizes) {
     json& of = j["swimmers"].emplace_back(json{{"links", s.links}, {"dof", s.dofs}, {"rows", s.rows}, {"kinematics_microseconds", number(s.kinematics)}, {"operators", json::array()}});
     for (const SwimmerCell& c : s.cells) {
@@ -115,8 +113,7 @@ void to_json(json& j, const Figure2& f) {
 }
 
 void from_json(const json& j, Figure2& f) {
-  const json& m = j.at("machine");
-  f.machine = {m.at("processor"), m.at("system"), m.at("compiler"), m.at("flags"), m.at("revision"), m.at("date"), m.at("cores")};
+  f.machine = j.at("machine");
   f.longest = j.at("longest_seconds");
   f.most_bytes = j.at("most_bytes");
   f.sizes.clear();

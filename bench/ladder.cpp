@@ -17,12 +17,6 @@ double slowest(const Cell& c) {
   return t;
 }
 
-/// y at size n, continued from (n0, y0), (n1, y1) along a power law of at least first order.
-double continued(double n, double n0, double y0, double n1, double y1) {
-  const double order = std::max(1.0, std::log(y1 / y0) / std::log(n1 / n0));
-  return y1 * std::pow(n / n1, order);
-}
-
 /// Why the operator in column `i` is not run at size n; empty: it is.
 std::string why_not(const std::vector<Rung>& below, std::size_t i, Index n, double longest, double most_bytes) {
   if (below.size() < 2) return "";
@@ -42,6 +36,11 @@ std::string why_not(const std::vector<Rung>& below, std::size_t i, Index n, doub
 }
 
 }  // namespace
+
+double continued(double n, double n0, double y0, double n1, double y1) {
+  const double order = std::max(1.0, std::log(y1 / y0) / std::log(n1 / n0));
+  return y1 * std::pow(n / n1, order);
+}
 
 std::vector<Index> ladder_sizes(Index largest) {
   std::vector<Index> sizes;

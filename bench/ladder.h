@@ -14,6 +14,9 @@ namespace delassus::bench {
                                       double most_bytes, const std::function<void(const std::string&)>& progress,
                                       const std::function<bool()>& stop = {});
 
+/// y at size n, continued from (n0, y0), (n1, y1) along a power law of at least first order.
+[[nodiscard]] double continued(double n, double n0, double y0, double n1, double y1);
+
 /// 3, 10, 30, … up to and including `largest`.
 [[nodiscard]] std::vector<Index> ladder_sizes(Index largest);
 

@@ -5,6 +5,7 @@
 
 #include <ctime>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "bench/text.h"
@@ -59,6 +60,14 @@ std::int64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024 * static_cast<std::int64_t>(usage.ru_maxrss);
+}
+
+void to_json(nlohmann::json& j, const Machine& m) {
+  j = {{"processor", m.processor}, {"cores", m.cores}, {"system", m.system}, {"compiler", m.compiler}, {"flags", m.flags}, {"revision", m.revision}, {"date", m.date}};
+}
+
+void from_json(const nlohmann::json& j, Machine& m) {
+  m = {j.at("processor"), j.at("system"), j.at("compiler"), j.at("flags"), j.at("revision"), j.at("date"), j.at("cores")};
 }
 
 }  // namespace delassus::bench

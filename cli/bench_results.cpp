@@ -8,6 +8,7 @@
 #include "bench/figure2.h"
 #include "bench/phase_times.h"
 #include "bench/report.h"
+#include "bench/scaling.h"
 #include "bench/solver_profile.h"
 #include "bench/table1.h"
 #include "bench/text.h"
@@ -16,6 +17,7 @@
 #include "cli/interrupt.h"
 #include "generators/build.h"
 #include "generators/families.h"
+#include "generators/ladders.h"
 
 namespace delassus::cli {
 
@@ -70,6 +72,27 @@ int run_swimmers(const SwimmersOptions& o) {
     for (const bool solves : {false, true})
       std::ofstream(std::filesystem::path(o.pictures) / (solves ? "swimmers_solve.svg" : "swimmers_product.svg")) << bench::figure2_picture(f, solves);
   return o.from.empty() ? end_of_run(good, "lengths are missing") : good;
+}
+
+int run_ladders(const LaddersOptions& o) {
+  bench::Scaling s;
+  if (!o.pictures.empty()) bench::check_writable(o.pictures);
+  if (!o.from.empty()) {
+    s = read_results<bench::Scaling>(o.from, "what `delassus bench --ladders --json` prints; write it with > FILE");
+  } else {
+    std::vector<const generators::LadderRow*> rows;
+    for (const std::string& name : o.ladders) rows.push_back(&generators::find_ladder(name));
+    for (const generators::LadderRow& row : generators::ladders())
+      if (o.ladders.empty()) rows.push_back(&row);
+    keep_on_interrupt();
+    s = bench::measure_scaling(rows, chosen_operators(o.ops), {o.operations, 1e9 * o.gigabytes, false, say, interrupted});
+  }
+  print(s, o.as_json, bench::scaling_text);
+  const std::pair<const char*, Asks> pictures[] = {{"chain", Asks::product}, {"lattice", Asks::first_solve}, {"crossed", Asks::first_solve}};
+  for (const auto& [ladder, what] : pictures)
+    if (const std::string svg = o.pictures.empty() ? "" : bench::scaling_picture(s, ladder, what); !svg.empty())
+      std::ofstream(std::filesystem::path(o.pictures) / (std::string("ladder_") + ladder + ".svg")) << svg;
+  return o.from.empty() ? end_of_run(good, "sizes are missing") : good;
 }
 
 int run_solvers(const SolversOptions& o) {

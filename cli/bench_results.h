@@ -1,4 +1,4 @@
-// `delassus bench --table1`, `--swimmers`, `--solvers`, `--choose` and `--compare`: results measured, or printed from files of results.
+// `delassus bench --table1`, `--swimmers`, `--ladders`, `--solvers`, `--choose` and `--compare`: results measured, or printed from files of results.
 #pragma once
 
 #include <string>
@@ -19,6 +19,13 @@ struct SwimmersOptions {
   bool as_json = false;
 };
 
+struct LaddersOptions {
+  std::vector<std::string> ladders, ops;   ///< empty: all
+  std::string from, pictures;              ///< results to print instead of measuring; a directory for the pictures
+  double operations = 5e8, gigabytes = 1;
+  bool as_json = false;
+};
+
 struct SolversOptions {
   std::vector<std::string> solvers;      ///< empty: all
   std::string from, problems, pictures;  ///< results to print instead of measuring; a folder of problems besides; a directory for the pictures
@@ -34,6 +41,7 @@ struct ChooseOptions {
 // They return the exit code.
 [[nodiscard]] int run_table1(const Table1Options& o);
 [[nodiscard]] int run_swimmers(const SwimmersOptions& o);
+[[nodiscard]] int run_ladders(const LaddersOptions& o);
 [[nodiscard]] int run_solvers(const SolversOptions& o);
 [[nodiscard]] int run_choose(const ChooseOptions& o);
 [[nodiscard]] int run_compare(const std::vector<std::string>& files, double slack, bool as_json);

@@ -21,8 +21,9 @@ BENCH = ["build/release/property_tests/bench_judges", "--gtest_brief=1"]
 # By folder: targets, and (test, its command, whether it must fail).
 TESTS = {
     "cli": (["delassus_program"], [("judges", PYTHON, False)]),
-    "bench": (["bench_judges", "delassus_program", "work_gate"],
-              [("bench_judges", BENCH, False), ("judges", PYTHON, False), ("work_gate_can_fail", ["build/release/bench/work_gate", "dense_cholesky", "320"], True)]),
+    "bench": (["bench_judges", "delassus_program", "work_gate", "scaling_gate"],
+              [("bench_judges", BENCH, False), ("judges", PYTHON, False), ("work_gate_can_fail", ["build/release/bench/work_gate", "dense_cholesky", "320"], True),
+               ("scaling_gate_can_fail.cubic_form", ["build/release/bench/scaling_gate", "--defect", "cubic_form"], True)]),
     "property_tests": (["property_tests", "unit_tests"],
                        [("laws_can_fail", ["build/release/property_tests/property_tests", "--defect", "one_part_in_1e10", "--family", "chain", "--seeds", "1"], True),
                         ("unit", UNIT, False)]),

@@ -191,6 +191,8 @@ with tempfile.TemporaryDirectory() as name:
     run("bench", "--compare", after, before)
     swimmers = data("bench", "--swimmers", "--largest", 10, "--budget", "0.001", "--json")
     expect("swimmers", [s["links"] for s in swimmers["swimmers"]] == [3, 10] and all(len(s["operators"]) > 10 for s in swimmers["swimmers"]))
+    ladders = data("bench", "--ladders", "chain", "wall", "--op", "lcaba", "--op", "efpa", "--operations", "1e6", "--json")
+    expect("ladders", [l["ladder"] for l in ladders["ladders"]] == ["chain", "wall"] and [c["operator"] for c in ladders["ladders"][0]["sizes"][0]["operators"]] == ["lcaba", "efpa"])
 
     hard = folder / "hard.yaml"
     hard.write_text("boxes:\n  - {name: b, mass: 1, size: [1, 1, 1]}\nconstraints:\n  - {kind: point, of: b, at: [0, 0, 0], to: world}\ndamping: 0\n")

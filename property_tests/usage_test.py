@@ -62,7 +62,9 @@ refused([delassus, "bench", "--table1", "--scene", "swimmer:1", "--cache-lines",
 refused([delassus, "bench", "--solvers", "--from", "/nowhere/solvers.json"], "/nowhere/solvers.json", "cannot be read", "--solvers --json")
 refused([delassus, "bench", "--solvers", "--problems", "/nowhere"], "/nowhere", "cannot be read", "*.dat")
 refused([delassus, "bench", "--solvers", "--solver", "pgss"], "\"pgss\"", "pgs")
-refused([delassus, "bench", "--pictures", "/tmp"], "--pictures", "--swimmers or --solvers")
+refused([delassus, "bench", "--pictures", "/tmp"], "--pictures", "--swimmers, --ladders or --solvers")
+refused([delassus, "bench", "--ladders", "chian"], "\"chian\"", "chain")
+refused([delassus, "bench", "--ladders", "--from", "/nowhere/ladders.json"], "/nowhere/ladders.json", "cannot be read", "--ladders --json")
 misspelt([delassus, "bench", "--table1", "--solvers"], "--solvers", "--table1")
 refused([delassus, "bench", "--compare", "/nowhere/a.json"], "1 files", "two: before and after")
 for program in programs:

@@ -136,7 +136,7 @@ const std::vector<OperatorRow>& operators() {
        .terminates_exactly = true, .apply_error = ErrorClass::componentwise, .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsim>()},
       {.name = "caba_osimr", .summary = "the same on the tree contracted to branchings, loaded bodies and coupled joints",
        .formula = "Λ_R = R − R (Σ_i G_i D_i⁻¹ G_iᵀ) R, factor of M + Jᵀ R J", .source = "Sathya and Carpentier 2025; loops: algorithms/factors/row_propagation.h",
-       .cost = "O(n + m²) with local loops", .applies = false, .solves = true, .zero_damping = false,
+       .cost = "O(n + m²), O(n + m² d) where loops couple joints", .applies = false, .solves = true, .zero_damping = false,
        .terminates_exactly = true, .apply_error = ErrorClass::amplified,  // of its mobilities
         .solve_error = ErrorClass::amplified, .holds = Holds::rows_squared, .makers = makers<CabaOsimR>()},
       {.name = "lcaba_refined", .summary = "lcaba with refinement on the KKT residual and a certificate",

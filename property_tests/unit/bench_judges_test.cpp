@@ -7,10 +7,12 @@
 #include "algorithms/kit/test_scalars.h"
 #include "bench/cell.h"
 #include "bench/choosing.h"
+#include "bench/dissection.h"
 #include "bench/drawing.h"
 #include "bench/growth.h"
 #include "bench/page.h"
 #include "bench/report.h"
+#include "bench/scaling.h"
 #include "bench/verify.h"
 #include "generators/build.h"
 #include "generators/families.h"
@@ -150,6 +152,69 @@ TEST(Growth, OnlyLinearGrowthPasses) {
   EXPECT_FALSE(grows_linearly({10, 20}));
   EXPECT_TRUE(no_work({0, 0, 0}));
   EXPECT_FALSE(no_work({0, 0, 1}) || no_work({-1, -1, -1}) || no_work({}));
+}
+
+/// c₀ + c₁ s + c₂ s log₂ s + c₃ s² + c₄ s³ at 4, 8, 16, …
+std::vector<double> sums(double c0, double c1, double c2, double c3, double c4, int sizes = 9) {
+  std::vector<double> f;
+  for (double s = 4; sizes-- > 0; s *= 2) f.push_back(c0 + c1 * s + c2 * s * std::log2(s) + c3 * s * s + c4 * s * s * s);
+  return f;
+}
+const std::vector<int> powers{0, 1, 1, 2, 3};
+
+TEST(Scaling, TheLeadingPowerIsMeasuredExactly) {
+  const auto order = [](const std::vector<double>& f, const std::vector<double>& declared) { return order_of(powers, f, declared); };
+  const Order constant = order(sums(7, 0, 0, 0, 0), sums(1, 0, 0, 0, 0)), linear = order(sums(900, 7, 0, 0, 0), sums(0, 1, 0, 0, 0)), log = order(sums(900, 70, 7, 0, 0), sums(0, 5, 1, 0, 0)),
+              square = order(sums(900, 70, 700, 7, 0), sums(0, 1, 0, 1, 0)), cube = order(sums(900, 7000, 700, 70, 7), sums(0, 0, 0, 0, 1));
+  EXPECT_DOUBLE_EQ(constant.measured, 0);
+  EXPECT_DOUBLE_EQ(linear.measured, 1);
+  EXPECT_DOUBLE_EQ(log.measured, 1);
+  EXPECT_DOUBLE_EQ(square.measured, 2);
+  EXPECT_DOUBLE_EQ(cube.measured, 3);
+  EXPECT_EQ(linear.logarithms, 0);
+  EXPECT_EQ(log.logarithms, 1);
+  EXPECT_EQ(square.logarithms, 0);
+  for (const Order& o : {constant, linear, log, square, cube}) EXPECT_TRUE(o.agree()) << o.measured << " " << o.declared;
+}
+
+TEST(Scaling, WhatIsMoreOrLessThanDeclaredIsNot) {
+  EXPECT_FALSE(order_of(powers, sums(900, 70, 0, 0.01, 0), sums(0, 1, 0, 0, 0)).agree()) << "a hundredth of an operation more per pair";
+  EXPECT_FALSE(order_of(powers, sums(900, 7, 7, 0, 0), sums(0, 1, 0, 0, 0)).agree()) << "a logarithm more";
+  EXPECT_FALSE(order_of(powers, sums(900, 70, 0, 0, 0), sums(0, 1, 0, 1, 0)).agree()) << "declared too high";
+  EXPECT_FALSE(order_of(powers, sums(900, 70, 0, 0, 0), sums(0, 1, 1, 0, 0)).agree()) << "a logarithm too many";
+  EXPECT_FALSE(order_of(powers, sums(900, 70, 0, 7, 0, 3), sums(0, 1, 0, 1, 0)).agree()) << "sizes are too few";
+  EXPECT_TRUE((Order{1.019, 1, 0}.agree()));
+  EXPECT_FALSE((Order{1.021, 1, 0}.agree()) || (Order{0.979, 1, 0}.agree()) || Order{}.agree());
+}
+
+TEST(Scaling, AFitHasToArriveAtTheLastSize) {
+  std::vector<double> sizes, as_declared, more;
+  std::vector<std::vector<double>> terms;
+  for (double s = 4; s < 40; s += 4) {
+    const double irregular = s * s + std::fmod(7 * s, 5) * s;
+    sizes.push_back(s), terms.push_back({s, irregular});
+    as_declared.push_back(100 * s + 3 * irregular), more.push_back(100 * s + 3 * irregular + 0.05 * s * s * s);
+  }
+  EXPECT_NEAR(order_by_fit(sizes, as_declared, terms).measured, order_by_fit(sizes, as_declared, terms).declared, 1e-9);
+  EXPECT_FALSE(order_by_fit(sizes, more, terms).agree());
+  EXPECT_FALSE(order_by_fit({4, 8, 12}, {1, 2, 3}, {terms[0], terms[1], terms[2]}).agree()) << "sizes are too few";
+}
+
+TEST(Scaling, AnOrderOfEliminationIsCounted) {
+  EXPECT_EQ(lattice_front_pairs(2, {0, 1, 2, 3}), 6 * (9 + 9 + 4 + 1)) << "a square: two neighbours, two, one, none";
+  EXPECT_EQ(lattice_front_pairs(2, {0, 3, 1, 2}), 6 * (9 + 9 + 4 + 1));
+  EXPECT_EQ(lattice_front_pairs(3, {4, 0, 1, 2, 3, 5, 6, 7, 8}), 6 * (25 + 9 + 25 + 16 + 16 + 16 + 9 + 4 + 1)) << "the middle first couples all its neighbours";
+  for (const Index side : {1, 2, 3, 7, 16}) {
+    std::vector<Index> order = dissection(side);
+    std::sort(order.begin(), order.end());
+    ASSERT_EQ(order.size(), static_cast<std::size_t>(side * side));
+    for (Index k = 0; k < side * side; ++k) EXPECT_EQ(order[static_cast<std::size_t>(k)], k);
+  }
+}
+
+TEST(Scaling, EveryOperatorDeclaresItsOrders) {
+  for (const OperatorRow& row : operators()) EXPECT_NO_THROW(static_cast<void>(declared_orders(row.name))) << row.name;
+  EXPECT_THROW(static_cast<void>(declared_orders("nosuch")), std::logic_error);
 }
 
 LawResult law(const char* name, double ratio, bool passed, const char* skipped = "") { return {name, ratio, passed, skipped, "", false}; }
