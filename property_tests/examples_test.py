@@ -1,6 +1,7 @@
 """Every `delassus simulate` of docs/examples.md, for some steps: it ends well, with residuals below what is asked, loops closed, numbers finite.
 
-examples_test.py BUILD_DIR [SECONDS]        simulated, instead of a few steps: for long runs, with the memory that each took
+examples_test.py BUILD_DIR [SECONDS [WORD]]     simulated, instead of a few steps: long runs of the examples with this word in their line,
+                                                with the memory that they took
 """
 import json
 import math
@@ -15,13 +16,14 @@ seconds = float(sys.argv[2]) if len(sys.argv) > 2 else None
 root = pathlib.Path(__file__).parent.parent
 page = (root / "docs/examples.md").read_text()
 lines = re.findall(r"^delassus (simulate \S+.*?)\s*(?:#.*)?$", page, re.MULTILINE)
+word = sys.argv[3] if len(sys.argv) > 3 else ""
 failures = []
 
 
 def sound(r, wanted, asked=1e-10):
     """What is wrong with the summary of a run."""
     numbers = [r["residual"], r["left"], *(r[at][of] for at in ("begin", "end") for of in ("kinetic", "potential")), *r["end"]["centre"]]
-    return [word for word, wrong in {
+    return [what for what, wrong in {
         f"ended at step {r['steps']} of {wanted}: {r['status']}; {r['message']}": r["steps"] != wanted or r["status"] != "ok" or r["message"],
         "a number that is not finite": not all(map(math.isfinite, numbers)),
         f"residual {r['residual']} m/s": r["residual"] > asked,
@@ -29,7 +31,7 @@ def sound(r, wanted, asked=1e-10):
         "files of problems that were not solved": r["unsolved"]}.items() if wrong]
 
 
-for line in lines:
+for line in [line for line in lines if word in line]:
     words = line.split()
     at = words.index("--duration") + 1
     words[at] = str(seconds or 0.05)
@@ -42,7 +44,7 @@ for line in lines:
         continue
     asked = float(words[words.index("--residual") + 1]) if "--residual" in words else 1e-10
     wrong = sound(r, round(float(words[at]) / r["step"]), asked)
-    failures += [f"{line}: {word}" for word in wrong]
+    failures += [f"{line}: {what}" for what in wrong]
     if seconds:
         energy = [r[e]["kinetic"] + r[e]["potential"] for e in ("begin", "end")]
         print(f"{line}: {r['steps']} steps, {r['seconds'] / max(1, r['steps']) * 1e6:.0f} µs a step, residual {r['residual']:.1e}, left {r['left']:.1e}, "

@@ -180,6 +180,11 @@ template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>
   more_.col(0) = now.state->nu + motion_.col(0);
   tree_->J(more_, rows_of_);
   for (Index r = 0; r < rows_of_.rows(); ++r) problem_.free_velocity[r] = static_cast<double>(rows_of_(r, 0));
+  if (!problem_.free_velocity.allFinite()) {  // no solver is asked: they refuse it
+    out.report.status = Status::not_finite;
+    out.message = "a velocity is not finite: what moves is too fast for steps of this length";
+    return out;
+  }
   out = solve();
   asked_ = true, solved_ = out.ok();
   if (!out.ok()) return out;

@@ -210,5 +210,19 @@ TEST(Contacts, a_step_that_fails_leaves_the_state) {
   }
 }
 
+/// What moves so fast that its forces overflow ends with a status, not with an exception: what was computed is kept.
+TEST(Contacts, numbers_that_overflow_end_the_step_with_a_status) {
+  Model m;
+  m.add(box("brick", 2, {0.1, 0.2, 0.3}));
+  Scene scene = on_the_ground(std::move(m), {0, 0, -g}, 0.5);
+  scene.q[2] = 0.3;
+  scene.motion.nu.head<3>() << 1e160, 2e160, 3e160;
+  Simulation<double> s(scene, step_of(1e-3));
+  const VectorX<double> q = s.state().q;
+  EXPECT_EQ(s.step().report.status, Status::not_finite);
+  EXPECT_NE(s.last().message.find("not finite"), std::string::npos);
+  EXPECT_TRUE(s.state().q == q);
+}
+
 }  // namespace
 }  // namespace delassus
