@@ -6,6 +6,7 @@
 
 #include "bench/compare.h"
 #include "bench/figure2.h"
+#include "bench/peer_table.h"
 #include "bench/phase_times.h"
 #include "bench/report.h"
 #include "bench/scaling.h"
@@ -56,6 +57,19 @@ int run_table1(const Table1Options& o) {
   const bench::TableOptions options{o.scenes, o.ops.empty() ? std::vector<const OperatorRow*>{} : chosen_operators(o.ops), o.budget, o.probe, interrupted};
   print(bench::measure_table(options, say), o.as_json, bench::table_text);
   return end_of_run(good, "scenes are missing");
+}
+
+int run_peers(const PeersOptions& o) {
+  bench::PeerTable t;
+  if (!o.from.empty()) {
+    t = read_results<bench::PeerTable>(o.from, "what `delassus bench --peers --json` prints; write it with > FILE");
+  } else {
+    keep_on_interrupt();
+    t = bench::measure_peers(o.scenes, bench::peers(), o.budget, say, interrupted);
+  }
+  print(t, o.as_json, bench::peer_text);
+  const int code = t.disagreements() > 0 ? law_broken : good;
+  return o.from.empty() ? end_of_run(code, "scenes are missing") : code;
 }
 
 int run_swimmers(const SwimmersOptions& o) {

@@ -57,6 +57,8 @@ for time in ["0", "-1s", "1e999", "1e300h", "nan", ""]:
     refused([delassus, "stress", "--time", time], "--time", f"'{time}'", "a number of seconds > 0")
 refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite number > 0 [s]")
 misspelt([delassus, "bench", "--table1", "--swimmers"], "--swimmers", "--table1")
+misspelt([delassus, "bench", "--peers", "--table1"], "--peers", "--table1")
+refused([delassus, "bench", "--peers", "--from", "/nowhere/peers.json"], "/nowhere/peers.json", "cannot be read", "--peers --json")
 refused([delassus, "bench", "--table1", "--from", "/nowhere/table1.json"], "/nowhere/table1.json", "cannot be read", "--table1 --json")
 refused([delassus, "bench", "--table1", "--scene", "swimmer:1", "--cache-lines", "/nowhere/phase_probe"], "/nowhere/phase_probe")
 refused([delassus, "bench", "--solvers", "--from", "/nowhere/solvers.json"], "/nowhere/solvers.json", "cannot be read", "--solvers --json")

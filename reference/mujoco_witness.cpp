@@ -282,6 +282,9 @@ MatrixX<double> MujocoWitness::M() const {
   return s.T.transpose() * full * s.T;
 }
 
+mjModel_& MujocoWitness::compiled() { return *state_->compiled; }
+mjData_& MujocoWitness::data() { return *state_->data; }
+
 MatrixX<double> MujocoWitness::J() const { return state_->J * state_->T; }
 
 MatrixX<double> MujocoWitness::A0() const {

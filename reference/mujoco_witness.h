@@ -26,6 +26,9 @@
 
 #include "algorithms/mechanism/kinematics.h"
 
+struct mjModel_;
+struct mjData_;
+
 namespace delassus::reference {
 
 /// One of MuJoCo's joints; a joint of ours is one to four of them.
@@ -56,6 +59,10 @@ class MujocoWitness {
   [[nodiscard]] MatrixX<double> M() const;   ///< n × n
   [[nodiscard]] MatrixX<double> J() const;   ///< m × n
   [[nodiscard]] MatrixX<double> A0() const;  ///< m × m: J M⁻¹ Jᵀ by MuJoCo's factorisation. Cost O(n m depth + n m²)
+
+  /// MuJoCo's own, for who asks it for more (bench/peers); body i is mujoco_name(i).
+  [[nodiscard]] mjModel_& compiled();
+  [[nodiscard]] mjData_& data();
 
  private:
   struct State;

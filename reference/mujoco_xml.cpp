@@ -1,5 +1,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -77,6 +78,12 @@ void body_text(const Model& model, const std::vector<std::vector<Index>>& childr
   text += "</body>\n";
 }
 
+/// What its `connect` rows take, or what it gives by itself.
+std::size_t room_for_rows(const Model& model) {
+  const auto is_point = [](const Constraint& c) { return c.kind == Constraint::Kind::point; };
+  return std::max<std::size_t>(500, 3 * static_cast<std::size_t>(std::count_if(model.constraints.begin(), model.constraints.end(), is_point)));
+}
+
 std::string equality_text(const Model& model) {
   std::string text;
   for (const Constraint& c : model.constraints) {
@@ -120,7 +127,7 @@ std::string mujoco_xml(const Model& model) {
       children[static_cast<std::size_t>(model.bodies[i].parent)].push_back(static_cast<Index>(i));
   std::string text =
       "<mujoco>\n<compiler coordinate=\"local\" angle=\"radian\" autolimits=\"false\" inertiafromgeom=\"false\" "
-      "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" settotalmass=\"-1\" fusestatic=\"false\"/>\n"
+      "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" settotalmass=\"-1\" fusestatic=\"false\"/>\n<size njmax=\"" + std::to_string(room_for_rows(model)) + "\"/>\n"
       "<option gravity=\"0 0 0\" jacobian=\"dense\">\n<flag equality=\"enable\" contact=\"disable\" limit=\"disable\" "
       "frictionloss=\"disable\" gravity=\"disable\"/>\n</option>\n<worldbody>\n";
   for (std::size_t i = 0; i < model.bodies.size(); ++i)

@@ -1,0 +1,72 @@
+#include <nlohmann/json.hpp>
+
+#include "bench/peer_table.h"
+
+namespace delassus::bench {
+
+using nlohmann::json;
+
+namespace {
+
+json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
+double number_of(const json& j) { return j.is_null() ? NAN : j.get<double>(); }
+
+json written(const PeerEntry& e) {
+  json j = {{"name", e.name}, {"program", e.program}, {"what", e.what}, {"counterparts", {{"product", e.product}, {"solve", e.solve}}}, {"from_q", e.from_q},
+            {"cannot", e.cannot}, {"disagrees", e.disagrees}, {"M_error", number(e.M_error)}, {"product_error", number(e.product_error)}, {"force_error", number(e.force_error)},
+            {"microseconds", json::object()}};
+  for (std::size_t k = 0; k < step_count; ++k)
+    if (const Spread& s = e.time[k]; s.measured()) j["microseconds"][name(step(k))] = {{"median", s.median}, {"quartiles", {s.low, s.high}}, {"rounds", s.rounds}};
+  return j;
+}
+
+PeerEntry entry_read(const json& j) {
+  PeerEntry e;
+  e.name = j.at("name"), e.program = j.at("program"), e.what = j.at("what");
+  e.product = j.at("counterparts").at("product"), e.solve = j.at("counterparts").at("solve");
+  e.from_q = j.at("from_q");
+  e.cannot = j.at("cannot"), e.disagrees = j.at("disagrees");
+  e.M_error = number_of(j.at("M_error")), e.product_error = number_of(j.at("product_error")), e.force_error = number_of(j.at("force_error"));
+  for (std::size_t k = 0; k < step_count; ++k)
+    if (const json& times = j.at("microseconds"); times.contains(name(step(k)))) {
+      const json& s = times.at(name(step(k)));
+      e.time[k] = {s.at("median"), s.at("quartiles").at(0), s.at("quartiles").at(1), s.at("rounds")};
+    }
+  return e;
+}
+
+json written(const PeerScene& s) {
+  json j = {{"scene", s.scene}, {"dof", s.dofs}, {"rows", s.rows}, {"loops", s.loops}, {"damping", {{"smallest", s.smallest_damping}, {"largest", s.largest_damping}}},
+            {"limits", {{"product_error", number(s.product_limit)}, {"force_error", number(s.force_limit)}}}, {"entries", json::array()}};
+  for (const PeerEntry& e : s.entries) j["entries"].push_back(written(e));
+  return j;
+}
+
+PeerScene scene_read(const json& j) {
+  PeerScene s{j.at("scene"), j.at("dof"), j.at("rows"), j.at("loops"), j.at("damping").at("smallest"), j.at("damping").at("largest"), number_of(j.at("limits").at("product_error")), number_of(j.at("limits").at("force_error")), {}};
+  for (const json& e : j.at("entries")) s.entries.push_back(entry_read(e));
+  return s;
+}
+
+}  // namespace
+
+void to_json(json& j, const PeerTable& t) {
+  const Machine& m = t.machine;
+  j = {{"machine", {{"processor", m.processor}, {"cores", m.cores}, {"system", m.system}, {"compiler", m.compiler}, {"flags", m.flags}, {"revision", m.revision}, {"date", m.date},
+                    {"kernels", t.kernels}, {"load", {number(t.load), number(t.load_after)}}}},
+       {"units", {{"time", "µs per call"}, {"damping", "1/kg"}}}, {"budget_seconds", t.budget}, {"interrupted", t.interrupted}, {"peers", json::array()}};
+  for (const PeerScene& s : t.scenes) j["peers"].push_back(written(s));
+}
+
+void from_json(const json& j, PeerTable& t) {
+  const json& m = j.at("machine");
+  t.machine = {m.at("processor"), m.at("system"), m.at("compiler"), m.at("flags"), m.at("revision"), m.at("date"), m.at("cores")};
+  t.kernels = m.at("kernels");
+  t.load = number_of(m.at("load").at(0)), t.load_after = number_of(m.at("load").at(1));
+  t.budget = j.at("budget_seconds");
+  t.interrupted = j.at("interrupted");
+  t.scenes.clear();
+  for (const json& s : j.at("peers")) t.scenes.push_back(scene_read(s));
+}
+
+}  // namespace delassus::bench
