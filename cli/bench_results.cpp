@@ -68,8 +68,7 @@ int run_peers(const PeersOptions& o) {
     t = bench::measure_peers(o.scenes, bench::peers(), o.budget, say, interrupted);
   }
   print(t, o.as_json, bench::peer_text);
-  const int code = t.disagreements() > 0 ? law_broken : good;
-  return o.from.empty() ? end_of_run(code, "scenes are missing") : code;
+  return o.from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, "scenes are missing") : good;
 }
 
 int run_swimmers(const SwimmersOptions& o) {
