@@ -82,18 +82,24 @@ std::string no_answer(const Cell& c, Column phase) {
   return "<td class=\"soft\" title=\"ended without an answer\">" + breakable(phase == &Phases::solve && !c.solved() ? c.solve_status : c.update_status) + "</td>";
 }
 
+/// Scenes beside one another, operators below one another: there are more of these, and one without the phase has no line.
 std::string matrix(const Results& r, const std::string& caption, Column phase) {
-  std::string s = "<div class=\"wide\"><table class=\"matrix\"><caption>" + caption + "</caption><thead><tr><th>scene</th>";
-  for (const OperatorInfo& o : r.operators) s += "<th>" + breakable(o.name) + "</th>";
+  std::string s = "<div class=\"wide\"><table class=\"matrix\"><caption>" + caption + "</caption><thead><tr><th>operator</th>";
+  std::vector<double> best(r.scenes.size(), INFINITY);
+  const auto has_phase = [&](const Cell& c) { return !phase || !c.answered(phase) || (c.time.*phase).measured(); };
+  for (std::size_t k = 0; k < r.scenes.size(); ++k) {
+    s += "<th><a href=\"#" + escape(r.scenes[k].name) + "\">" + breakable(r.scenes[k].name) + "</a></th>";
+    for (const Cell& c : r.scenes[k].cells)
+      if (phase && c.answered(phase) && (c.time.*phase).measured()) best[k] = std::min(best[k], (c.time.*phase).lowest);
+  }
   s += "</tr></thead><tbody>";
-  for (const SceneResult& scene : r.scenes) {
-    s += "<tr><td><a href=\"#" + escape(scene.name) + "\">" + escape(scene.name) + "</a></td>";
-    double best = INFINITY;
-    if (phase)
-      for (const Cell& c : scene.cells)
-        if ((c.time.*phase).measured() && c.answered(phase)) best = std::min(best, (c.time.*phase).lowest);
-    for (const Cell& c : scene.cells)
-      s += !phase ? verdict_cell(c) : !c.answered(phase) ? no_answer(c, phase) : time_cell(c.time.*phase, (c.time.*phase).lowest <= 1.05 * best);
+  for (std::size_t i = 0; i < r.operators.size(); ++i) {
+    if (std::none_of(r.scenes.begin(), r.scenes.end(), [&](const SceneResult& scene) { return has_phase(scene.cells[i]); })) continue;
+    s += "<tr><td>" + escape(r.operators[i].name) + "</td>";
+    for (std::size_t k = 0; k < r.scenes.size(); ++k) {
+      const Cell& c = r.scenes[k].cells[i];
+      s += !phase ? verdict_cell(c) : !c.answered(phase) ? no_answer(c, phase) : time_cell(c.time.*phase, (c.time.*phase).lowest <= 1.05 * best[k]);
+    }
     s += "</tr>";
   }
   return s + "</tbody></table></div>";
@@ -147,7 +153,7 @@ std::string summary_section(const Results& r) {
 
 std::string overview_section(const Results& r) {
   return "<h2 id=\"overview\">Overview</h2><p>Times are the lowest of several batches in one run, in microseconds, one "
-         "core; the median is in each number's tooltip and in <code>results.json</code>. <b>Bold</b>: fastest of its row, and what comes within 5 % of it. "
+         "core; the median is in each number's tooltip and in <code>results.json</code>. <b>Bold</b>: fastest on its scene, and what comes within 5 % of it. "
          "<em>update</em>: the numbers of a configuration; <em>apply</em>, <em>solve</em>: one vector.</p><div class=\"tables\">" +
          matrix(r, "Laws: worst error ratio (holds below 30)", nullptr) + matrix(r, "update [µs]", &Phases::update) +
          matrix(r, "apply [µs]", &Phases::apply) + matrix(r, "solve [µs]", &Phases::solve) + "</div>";

@@ -44,6 +44,26 @@ def product(A, x):
     return [sum(a * b for a, b in zip(row, x)) for row in A]
 
 
+def jacobian(parts):
+    """Rows Σ K_i S_j over the joints j from body i to its root, and 𝒦 of rows on a joint, of an export."""
+    rows = [[0.0] * parts["dof"] for _ in range(parts["rows"])]
+    for constraint in parts["constraints"]:
+        for r in range(constraint["rows"]):
+            row = rows[constraint["row"] + r]
+            if "joint_of_body" in constraint:
+                first = parts["joints"][constraint["joint_of_body"]]["first_dof"]
+                for k, x in enumerate(constraint["K"][r]):
+                    row[first + k] += x
+            for link in constraint.get("links", []):
+                body = link["body"]
+                while body >= 0:
+                    joint = parts["joints"][body]
+                    for dof in range(joint["first_dof"], joint["first_dof"] + joint["dof"]):
+                        row[dof] += sum(k * s for k, s in zip(link["K"][r], parts["S"][dof]))
+                    body = parts["parents"][body]
+    return rows
+
+
 def solved(A, B):
     """X of A X = B, by elimination with pivots."""
     n = len(A)
@@ -114,6 +134,9 @@ with tempfile.TemporaryDirectory() as name:
     run("export", scene, "--out", folder / "out.json")
     expect("export --out", json.loads((folder / "out.json").read_text()) == e)
     J, M, R = e["J"], e["M"], e["R_inverse"]
+    for name in (scene, "cassie"):  # A does not see the sign of J, its own parts do
+        parts = data("export", name)
+        expect(f"export {name}: J of its K and S", all(close(row, from_parts) for row, from_parts in zip(parts["J"], jacobian(parts))))
     Minv_Jt = solved(M, [list(column) for column in zip(*J)])
     A = [[sum(J[r][k] * Minv_Jt[k][c] for k in range(len(M))) + R[r][c] for c in range(len(J))] for r in range(len(J))]
     m = len(J)
