@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "bench/json.h"
 #include "bench/ladder.h"
 #include "bench/machine.h"
 #include "bench/plot.h"
@@ -41,9 +41,6 @@ Points points_of(const Figure2& f, const std::string& op, double SwimmerCell::*y
 }
 
 std::string two_decimals(double x) { return std::isnan(x) ? "–" : format("%.2f", x); }
-
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-double number_of(const json& j) { return j.is_null() ? NAN : j.get<double>(); }
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-#include <nlohmann/json.hpp>
-
+#include "bench/json.h"
+#include "bench/machine.h"
 #include "bench/peer_table.h"
 
 namespace delassus::bench {
@@ -8,15 +8,12 @@ using nlohmann::json;
 
 namespace {
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-double number_of(const json& j) { return j.is_null() ? NAN : j.get<double>(); }
-
 json written(const PeerEntry& e) {
   json j = {{"name", e.name}, {"program", e.program}, {"what", e.what}, {"counterparts", {{"product", e.product}, {"solve", e.solve}}}, {"from_q", e.from_q},
             {"cannot", e.cannot}, {"disagrees", e.disagrees}, {"M_error", number(e.M_error)}, {"product_error", number(e.product_error)}, {"force_error", number(e.force_error)},
             {"microseconds", json::object()}};
   for (std::size_t k = 0; k < step_count; ++k)
-    if (const Spread& s = e.time[k]; s.measured()) j["microseconds"][name(step(k))] = {{"median", s.median}, {"quartiles", {s.low, s.high}}, {"rounds", s.rounds}};
+    if (e.time[k].measured()) j["microseconds"][name(step(k))] = written(e.time[k]);
   return j;
 }
 
@@ -28,10 +25,7 @@ PeerEntry entry_read(const json& j) {
   e.cannot = j.at("cannot"), e.disagrees = j.at("disagrees");
   e.M_error = number_of(j.at("M_error")), e.product_error = number_of(j.at("product_error")), e.force_error = number_of(j.at("force_error"));
   for (std::size_t k = 0; k < step_count; ++k)
-    if (const json& times = j.at("microseconds"); times.contains(name(step(k)))) {
-      const json& s = times.at(name(step(k)));
-      e.time[k] = {s.at("median"), s.at("quartiles").at(0), s.at("quartiles").at(1), s.at("rounds")};
-    }
+    if (const json& times = j.at("microseconds"); times.contains(name(step(k)))) e.time[k] = spread_read(times.at(name(step(k))));
   return e;
 }
 
@@ -51,16 +45,16 @@ PeerScene scene_read(const json& j) {
 }  // namespace
 
 void to_json(json& j, const PeerTable& t) {
-  const Machine& m = t.machine;
-  j = {{"machine", {{"processor", m.processor}, {"cores", m.cores}, {"system", m.system}, {"compiler", m.compiler}, {"flags", m.flags}, {"revision", m.revision}, {"date", m.date},
-                    {"kernels", t.kernels}, {"load", {number(t.load), number(t.load_after)}}}},
+  json machine = t.machine;
+  machine["kernels"] = t.kernels, machine["load"] = {number(t.load), number(t.load_after)};
+  j = {{"machine", machine},
        {"units", {{"time", "µs per call"}, {"damping", "1/kg"}}}, {"budget_seconds", t.budget}, {"interrupted", t.interrupted}, {"peers", json::array()}};
   for (const PeerScene& s : t.scenes) j["peers"].push_back(written(s));
 }
 
 void from_json(const json& j, PeerTable& t) {
   const json& m = j.at("machine");
-  t.machine = {m.at("processor"), m.at("system"), m.at("compiler"), m.at("flags"), m.at("revision"), m.at("date"), m.at("cores")};
+  t.machine = m;
   t.kernels = m.at("kernels");
   t.load = number_of(m.at("load").at(0)), t.load_after = number_of(m.at("load").at(1));
   t.budget = j.at("budget_seconds");

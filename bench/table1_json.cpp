@@ -1,5 +1,4 @@
-#include <nlohmann/json.hpp>
-
+#include "bench/json.h"
 #include "bench/table1.h"
 
 namespace delassus::bench {
@@ -7,18 +6,6 @@ namespace delassus::bench {
 using nlohmann::json;
 
 namespace {
-
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-double number_of(const json& j) { return j.is_null() ? NAN : j.get<double>(); }
-
-json written(const Spread& s) {
-  if (!s.measured()) return nullptr;
-  return {{"median", s.median}, {"quartiles", {s.low, s.high}}, {"rounds", s.rounds}};
-}
-Spread spread_read(const json& j) {
-  if (j.is_null()) return {};
-  return {j.at("median"), j.at("quartiles").at(0), j.at("quartiles").at(1), j.at("rounds")};
-}
 
 json written(const Entry& e) {
   json j = {{"operator", e.op}, {"explicit", e.is_explicit}, {"bytes", e.bytes}, {"product_error", number(e.product_error)},

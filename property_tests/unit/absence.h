@@ -5,6 +5,8 @@
 #include <map>
 
 #include "property_tests/unit/stepping_scenes.h"
+#include "simulation/effects/gravity.h"
+#include "simulation/effects/springs.h"
 
 namespace delassus::stepping {
 
@@ -54,6 +56,19 @@ inline std::vector<EffectRow> table_without(const std::string& effect) {
   std::vector<EffectRow> smaller = effects();
   std::erase_if(smaller, [&](const EffectRow& row) { return row.name == effect; });
   return smaller;
+}
+
+/// A table in which gravity brings the springs along, whoever leaves them out.
+inline std::vector<EffectRow> table_with_a_leak() {
+  using namespace simulation;
+  std::vector<EffectRow> leaky = effects();
+  for (EffectRow& row : leaky)
+    if (row.name == "gravity")
+      std::get<Adder<double>>(row.adders) = [](StepPlan<double>& p, const Scene& s) {
+        p.add<Gravity<double>>(s.gravity, static_cast<Index>(p.model.bodies.size()));
+        p.add<Springs<double>>(p.model, s.motion.springs);
+      };
+  return leaky;
 }
 
 }  // namespace delassus::stepping

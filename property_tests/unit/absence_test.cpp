@@ -3,8 +3,6 @@
 
 #include "algorithms/kit/counted.h"
 #include "property_tests/unit/absence.h"
-#include "simulation/effects/gravity.h"
-#include "simulation/effects/springs.h"
 
 namespace delassus {
 namespace {
@@ -55,15 +53,8 @@ TEST(Absence, bits_and_operations_are_those_of_a_scene_without_the_key) {
   }
 }
 
-/// A table in which gravity brings the springs along, whoever leaves them out.
 TEST(Absence, the_proofs_see_a_leak) {
-  std::vector<EffectRow> leaky = effects();
-  for (EffectRow& row : leaky)
-    if (row.name == "gravity")
-      std::get<Adder<double>>(row.adders) = [](StepPlan<double>& p, const Scene& s) {
-        p.add<Gravity<double>>(s.gravity, static_cast<Index>(p.model.bodies.size()));
-        p.add<Springs<double>>(p.model, s.motion.springs);
-      };
+  const std::vector<EffectRow> leaky = table_with_a_leak();
   const Scene scene = everything_smooth();
   Scene bare = scene;
   bare.motion.springs.clear();

@@ -6,8 +6,6 @@
 
 #include "property_tests/single_step.h"
 #include "property_tests/unit/absence.h"
-#include "simulation/effects/gravity.h"
-#include "simulation/effects/springs.h"
 
 namespace delassus {
 namespace {
@@ -95,16 +93,9 @@ std::string as_a_word(const testing::TestParamInfo<std::string>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Effects, AbsentInstructions, testing::ValuesIn(names()), as_a_word);
 
-/// A table in which gravity brings the springs along, whoever leaves them out.
 TEST(AbsentInstructions, a_leak_is_seen) {
   NEEDS_COUNTS();
-  std::vector<EffectRow> leaky = effects();
-  for (EffectRow& row : leaky)
-    if (row.name == "gravity")
-      std::get<Adder<double>>(row.adders) = [](StepPlan<double>& p, const Scene& s) {
-        p.add<Gravity<double>>(s.gravity, static_cast<Index>(p.model.bodies.size()));
-        p.add<Springs<double>>(p.model, s.motion.springs);
-      };
+  const std::vector<EffectRow> leaky = table_with_a_leak();
   const Scene scene = everything_smooth();
   const std::vector<Code> own = own_code(scene, step_of(1e-3), leaving_out("springs"));
   Settings program = leaving_out("springs");
