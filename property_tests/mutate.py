@@ -37,7 +37,7 @@ FILES = {
     "columns.h": "Columns lcaba aba_sweep lcaba_refined",
     "kkt_residual.cpp": "kernels lcaba_refined", "vectors.h": "refinement lcaba_refined", "wide.h": "kernels lcaba_refined",
     "refinement.cpp": "refinement lcaba_refined", "refinement.h": "refinement lcaba_refined",
-    "ldlt.h": "dense_cholesky lcaba", "explicit.cpp": "dense_cholesky explicit_columns", **dict.fromkeys(["ltl.cpp", "branch_factor.cpp", "branch_rows.cpp", "branch_rows.h"], "ltl_osim ltl_kkt"), "cg.cpp": "krylov cg cg_preconditioned",
+    "ldlt.h": "dense_cholesky lcaba", "explicit.cpp": "dense_cholesky explicit_columns", **dict.fromkeys(["symmetric_tiles.cpp", "coupled_rows.cpp"], "Tiles CoupledRows dense_cholesky caba_osim"), **dict.fromkeys(["ltl.cpp", "branch_factor.cpp", "branch_rows.cpp", "branch_rows.h"], "ltl_osim ltl_kkt"), "cg.cpp": "krylov cg cg_preconditioned",
     "ldlt_pivoted.h": "dependent elimination kkt_elimination", "kkt_elimination.cpp": "dependent elimination kkt_elimination dense_refined",
     "capped_inverse.cpp": "capped krylov proximal lcaba_float cg_preconditioned", "proximal.cpp": "proximal lcaba_float", "ladder.cpp": "Rungs ladder",
     "choose.cpp": "Choose", "auto.cpp": "Auto",

@@ -13,6 +13,7 @@ template <class T, Tree tree> void CabaOsimWith<T, tree>::do_analyze() {
   weights_.analyze(*this->structure());
   V_.setZero(m, m);
   F_.setZero(m, m);
+  inverse_.analyze(m);
   unit_.assign(static_cast<std::size_t>(m), T(0));
 }
 
@@ -54,15 +55,16 @@ template <class T, Tree tree> void CabaOsimWith<T, tree>::invert() {
     unit_[c] = T(0);
     for (Index r = 0; r < m; ++r) v[r] = of_R[r] - v[r];
   }
-  for (Index c = 0; c < m; ++c)
-    for (Index r = c + 1; r < m; ++r) V_(c, r) = V_(r, c);
+  inverse_.assign(V_);
 }
 
-template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_solve(ConstRef<T> a, Ref<T> f, T*) const {
+template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
   if (!factored_.ok()) return factored_;
+  T *const x = workspace, *const y = x + padded(this->size());
   for (Index c = 0; c < a.cols(); ++c) {
-    f.col(c).setZero();
-    for (Index k = 0; k < a.rows(); ++k) f.col(c) += V_.col(k) * a(k, c);
+    inverse_.load(a.data() + c * a.outerStride(), x);
+    inverse_.multiply(x, y);
+    inverse_.store(y, f.data() + c * f.outerStride());
   }
   return {};
 }
@@ -82,7 +84,7 @@ Report CabaOsimWith<T, tree>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* l
 template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_kkt_workspace() const { return padded(factor_.solve_workspace()) + padded(this->size()); }
 
 template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_bytes() const {
-  return plan_.bytes() + factor_.bytes() + rows_.bytes() + weights_.bytes() + static_cast<Index>(sizeof(T)) * (2 * V_.size() + static_cast<Index>(unit_.size()));
+  return plan_.bytes() + factor_.bytes() + rows_.bytes() + weights_.bytes() + static_cast<Index>(sizeof(T)) * (2 * V_.size() + static_cast<Index>(unit_.size())) + inverse_.bytes();
 }
 
 #define DELASSUS_INSTANTIATE(T) template class CabaOsimWith<T, Tree::whole>; template class CabaOsimWith<T, Tree::contracted>;

@@ -7,14 +7,15 @@
 // Singular when M_R is (lost_pivot); R⁻¹ must be positive (zero_damping names the row).
 // Off      R = 0 in rows that are off, so that V is 0 there.
 // Cost     update and new damping: lcaba's, then O(m²d) or O(n + m²), more where loops couple joints (each coupled step n_i per
-//          pair of rows it sees), and 4 m² (row blocks of m_e rows: 4 m² m_e); 2 m² per solve. No m³.
-// Workspace  for a pair that of the sweep and m; 2 m² numbers and those of row_propagation.h.
+//          pair of rows it sees), and 4 m² (row blocks of m_e rows: 4 m² m_e); 2 m² per solve (symmetric_tiles.h). No m³.
+// Workspace  2 m; for a pair that of the sweep and m. Holds 5/2 m² numbers and those of row_propagation.h.
 // Error    amplified: V is the small difference of R and R (J M_R⁻¹Jᵀ) R, as lcaba's.
 // Source   A. S. Sathya, J. Carpentier, Constrained articulated body dynamics algorithms, 2025 (trees, unary rows); loops:
 //          docs/paper_notes.md.
 #pragma once
 
 #include "algorithms/factors/row_propagation.h"
+#include "algorithms/factors/symmetric_tiles.h"
 #include "algorithms/operators/operator.h"
 
 namespace delassus {
@@ -27,7 +28,7 @@ template <class T, Tree tree> class CabaOsimWith : public Operator<T> {
   Report do_update_damping(const Damping<T>& damping) override;
   Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const override;
   Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const override;
-  [[nodiscard]] Index do_workspace(Index) const override { return 0; }
+  [[nodiscard]] Index do_workspace(Index) const override { return 2 * padded(this->size()); }
   [[nodiscard]] Index do_kkt_workspace() const override;
   [[nodiscard]] Index do_bytes() const override;
 
@@ -37,7 +38,8 @@ template <class T, Tree tree> class CabaOsimWith : public Operator<T> {
   Factor<T> factor_;
   RowPropagation<T> rows_;
   BlockDiagonal<T> weights_;    // R
-  MatrixX<T> V_, F_;            // m × m: Λ_R; J M_R⁻¹Jᵀ, and what is made of it
+  MatrixX<T> V_, F_;            // m × m: Λ_R, its lower triangle; J M_R⁻¹Jᵀ, and what is made of it
+  SymmetricTiles<T> inverse_;   // Λ_R
   std::vector<T> unit_;
   Report undamped_, factored_;  // of phase A, and of the whole factor
 };

@@ -3,6 +3,7 @@
 #include "algorithms/errors/status.h"
 #include <algorithm>
 
+#include "algorithms/factors/coupled_rows.h"
 #include "algorithms/factors/front_plan.h"
 
 namespace delassus {
@@ -16,11 +17,12 @@ struct Row {
   Declared is;
 };
 
-// An explicit row: how its matrix is formed, then the factor of A and dense products.
+// An explicit row: how its matrix is formed, then products, and the factor of A.
 Declared explicit_row(const Terms& form) {
-  Terms with_factor = form;
-  with_factor.push_back(rows_cubed);
-  return {form, with_factor, {rows, rows_squared}, {rows, rows_squared}, {rows, rows_squared, rows_cubed}};
+  Terms with_product = form, with_factor = form;
+  with_product.push_back(fill);
+  with_factor.insert(with_factor.end(), {fill, fill_squares});
+  return {with_product, with_factor, {rows, fill}, {rows, fill}, {rows, fill, fill_squares}};
 }
 
 const std::vector<Row>& table() {
@@ -34,8 +36,8 @@ const std::vector<Row>& table() {
   static const std::vector<Row> all{
       {"dense_cholesky", explicit_row({dofs_cubed, dofs_squared_rows, dofs_rows_squared, rows_squared, depth, row_depth})},
       {"explicit_columns", explicit_row(columns)},
-      {"ltl_osim", explicit_row({dofs, depth, depth_squared, row_depth, row_depth_squared, row_pairs, rows_squared})},
-      {"ltl_kkt", explicit_row({dofs, depth, depth_squared, row_depth, row_depth_squared, row_pairs, rows_squared})},
+      {"ltl_osim", explicit_row({dofs, depth, depth_squared, row_depth, row_depth_squared, row_pairs})},
+      {"ltl_kkt", explicit_row({dofs, depth, depth_squared, row_depth, row_depth_squared, row_pairs})},
       {"pv_osim", explicit_row({dofs, active_dofs, row_depth, row_pairs, rows_squared})},
       {"pv_osimr", explicit_row({dofs, active_dofs, tree_pairs, rows_squared})},
       {"kjr", explicit_row({dofs, active_dofs, path_pairs, tree_pairs, rows_squared})},
@@ -91,7 +93,7 @@ template <class Add> void add_fronts(const Structure& s, const Plan& plan, const
   }
 }
 
-constexpr std::string_view term_names[] = {"n", "n of loaded bodies", "m", "rows of K", "m²", "m³", "n m", "n² m", "n m²", "n³", "n d", "n d²", "m d", "m d²", "m² d",
+constexpr std::string_view term_names[] = {"n", "n of loaded bodies", "m", "rows of K", "m²", "m³", "entries of L", "their squares", "n m", "n² m", "n m²", "n³", "n d", "n d²", "m d", "m d²", "m² d",
                                            "joints between pairs of rows", "n m tree by tree", "m² tree by tree", "Σ n|Q|", "Σ n|Q|²", "Σ n|Q|r", "Σ n r²",
                                            "Σ n|Q|r of coupled joints", "Σ n r² of coupled joints", "panels of the QR", "reflections of the QR", "reductions of the QR"};
 static_assert(std::size(term_names) == static_cast<std::size_t>(Term::count));
@@ -142,6 +144,8 @@ std::array<double, static_cast<std::size_t>(Term::count)> terms(const Structure&
   }
   add(Term::dofs, n), add(rows, m), add(rows_squared, m * m), add(rows_cubed, m * m * m);
   add(dofs_rows, n * m), add(dofs_squared_rows, n * n * m), add(dofs_rows_squared, n * m * m), add(dofs_cubed, n * n * n);
+  const FillSums sums = fill_sums(s);
+  add(fill, sums.entries), add(fill_squares, sums.squares);
   const Plan plan = make_plan(s, Matrix::M_R);
   add_fronts(s, plan, add);
   return all;

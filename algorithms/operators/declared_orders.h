@@ -22,6 +22,8 @@ enum class Term : std::uint8_t {
   link_rows,          ///< rows of K: one per row and body it acts on
   rows_squared,       ///< m²
   rows_cubed,         ///< m³
+  fill,               ///< Σ_r l_r entries of column r of the factor of A (coupled_rows.h): m²/2 where all rows couple
+  fill_squares,       ///< Σ_r l_r²: m³/3 there
   dofs_rows,          ///< n m
   dofs_squared_rows,  ///< n² m
   dofs_rows_squared,  ///< n m²

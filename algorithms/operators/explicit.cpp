@@ -4,15 +4,15 @@
 
 #include "algorithms/kit/columns.h"
 #include "algorithms/kit/instantiate.h"
-#include "algorithms/kit/ldlt.h"
 
 namespace delassus {
 
 template <class T> void Explicit<T>::do_analyze() {
   const Index m = this->size();
   A0_.setZero(m, m);
-  A_.setZero(m, m);
-  factor_.setZero(m, m);
+  const Fill tiles = coupled_rows(*this->structure(), SymmetricTiles<T>::width);
+  A_.analyze(m, tiles);
+  factor_.analyze(m, tiles);
   damping_.analyze(*this->structure());
   analyze_form();
 }
@@ -24,10 +24,8 @@ template <class T> Report Explicit<T>::do_update(const Problem<T>& problem, cons
 
 template <class T> Report Explicit<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
   if (!factored_M_.ok()) return factored_M_;
-  A0_.setZero();
+  A_.clear(A0_);
   form(problem, A0_);
-  for (Index c = 0; c < A0_.cols(); ++c)
-    for (Index r = c + 1; r < A0_.rows(); ++r) A0_(c, r) = A0_(r, c);
   return do_update_damping(damping);
 }
 
@@ -35,43 +33,47 @@ template <class T> Report Explicit<T>::do_update_damping(const Damping<T>& dampi
   if (!factored_M_.ok()) return factored_M_;
   const Structure& s = *this->structure();
   damping_.assign(damping);
-  A_ = A0_;  // A = J M⁻¹ Jᵀ + R⁻¹
+  A_.assign(A0_);  // A = J M⁻¹ Jᵀ + R⁻¹
   Index e = 0;
   const auto add_damping = [&](Index row, Index rows) {
     const T* const block = damping_.dense(e++);
     for (Index c = 0; c < rows; ++c)
-      for (Index r = 0; r < rows; ++r)
-        if (block != nullptr) A_(row + r, row + c) += block[c * rows + r];
-        else if (r == c) A_(row + r, row + c) += damping_.diagonal(row + r);
+      if (block == nullptr) A_.add(row + c, row + c, damping_.diagonal(row + c));
+      else
+        for (Index r = c; r < rows; ++r) A_.add(row + r, row + c, block[c * rows + r]);
   };
   for (const auto& c : s.link_constraints) add_damping(c.row, c.rows);
   for (const auto& c : s.joint_constraints) add_damping(c.row, c.rows);
-  for (const Index r : damping_.off()) {
-    A_.row(r).setZero();
-    A_.col(r).setZero();
-  }
+  A_.cut(damping_.off());
   factor_ = A_;
-  for (const Index r : damping_.off()) factor_(r, r) = T(1);  // λ_r = 0 of a right-hand side 0
-  const Index lost = ldlt_factor(factor_.data(), s.rows, s.rows);
+  for (const Index r : damping_.off()) factor_.add(r, r, T(1));  // λ_r = 0 of a right-hand side 0
+  const Index lost = factor_.factor();
   factored_A_ = lost < 0 ? Report{} : Report{.status = Status::lost_pivot, .where = lost, .of_A = true};
   return {};  // apply is defined all the same; solve reports the lost pivot
 }
 
-template <class T> Report Explicit<T>::do_apply(ConstRef<T> f, Ref<T> a, T*) const {
+template <class T> Report Explicit<T>::do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const {
   if (!factored_M_.ok()) return factored_M_;
+  T *const x = workspace, *const y = x + padded(this->size());
   for (Index c = 0; c < f.cols(); ++c) {
-    a.col(c).setZero();
-    for (Index k = 0; k < f.rows(); ++k) a.col(c) += A_.col(k) * f(k, c);
+    A_.load(f.data() + c * f.outerStride(), x);
+    A_.multiply(x, y);
+    A_.store(y, a.data() + c * a.outerStride());
   }
   return {};
 }
 
-template <class T> Report Explicit<T>::do_solve(ConstRef<T> a, Ref<T> f, T*) const {
+template <class T> void Explicit<T>::solve_multipliers(const T* right, T* lambda, T* work) const {
+  factor_.load(right, work);
+  damping_.switch_off(work);
+  factor_.solve(work);
+  factor_.store(work, lambda);
+}
+
+template <class T> Report Explicit<T>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
   if (!factored_M_.ok()) return factored_M_;
   if (!factored_A_.ok()) return factored_A_;
-  f = a;
-  for (Index c = 0; c < f.cols(); ++c) damping_.switch_off(f.data() + c * f.outerStride());
-  for (Index c = 0; c < f.cols(); ++c) ldlt_solve(factor_.data(), f.rows(), f.rows(), f.data() + c * f.outerStride());
+  for (Index c = 0; c < f.cols(); ++c) solve_multipliers(a.data() + c * a.outerStride(), f.data() + c * f.outerStride(), workspace);
   return {};
 }
 
@@ -80,16 +82,16 @@ Report Explicit<T>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Acc
   if (!factored_M_.ok()) return factored_M_;
   if (!factored_A_.ok()) return factored_A_;
   const Index m = this->size();
+  T* const work = workspace + padded(m);
   std::copy(r2, r2 + m, lambda);
-  subtract_rates(r1, lambda, workspace);
-  damping_.switch_off(lambda);
-  ldlt_solve(factor_.data(), m, m, lambda);
-  motion(r1, lambda, nu, workspace);
+  subtract_rates(r1, lambda, work);
+  solve_multipliers(lambda, lambda, workspace);
+  motion(r1, lambda, nu, work);
   return {};
 }
 
 template <class T> Index Explicit<T>::do_bytes() const {
-  return 3 * static_cast<Index>(sizeof(T)) * A_.size() + damping_.bytes() + form_bytes();
+  return static_cast<Index>(sizeof(T)) * A0_.size() + A_.bytes() + factor_.bytes() + damping_.bytes() + form_bytes();
 }
 
 template <class T> void ExplicitBySweeps<T>::analyze_form() {

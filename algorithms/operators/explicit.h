@@ -4,8 +4,11 @@
 //            A λ = r₂ − J M⁻¹ r₁,   ν = M⁻¹(r₁ + Jᵀλ).
 // Singular M: as the row reports it. A (redundant hard rows): lost_pivot at a row, on solve only; rounding may leave a pivot above 0, and no digit.
 // Off      rows and columns of rows that are off are 0 in A, and 1 on the diagonal of what is factored: λ_r = 0.
-// Cost     beyond A₀: m² + m³/3 for a new damping, 2 m² per apply and per solve, 3 m² numbers.
-// Error    apply that of A₀; solve normwise κ(A), backward stable in A (ldlt.h).
+// How      A and its factor by tiles of the lower triangle, none where no tree and no constraint couples rows (symmetric_tiles.h).
+// Cost     beyond A₀: m² + m³/3 for a new damping, 2 m² per apply and per solve, 2 m² numbers; where bodies are many and free the sums
+//          over L's columns of coupled_rows.h in their place, and m² numbers.
+// Workspace  2 m, and m more for a pair than its own.
+// Error    apply that of A₀; solve normwise κ(A), backward stable in A (symmetric_tiles.h).
 //
 // A row of the table derives from Explicit and gives the eight functions below, or from ExplicitBySweeps, which has all but
 // `form`, from the articulated-body factor of M (factor.h).
@@ -13,6 +16,7 @@
 
 #include "algorithms/factors/block_diagonal.h"
 #include "algorithms/factors/factor.h"
+#include "algorithms/factors/symmetric_tiles.h"
 #include "algorithms/operators/operator.h"
 
 namespace delassus {
@@ -39,12 +43,15 @@ template <class T> class Explicit : public Operator<T> {
   Report do_apply(ConstRef<T> f, Ref<T> a, T* workspace) const final;
   Report do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const final;
   Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const final;
-  [[nodiscard]] Index do_workspace(Index) const final { return 0; }
-  [[nodiscard]] Index do_kkt_workspace() const final { return pair_workspace(); }
+  [[nodiscard]] Index do_workspace(Index) const final { return 2 * padded(this->size()); }
+  [[nodiscard]] Index do_kkt_workspace() const final { return padded(this->size()) + pair_workspace(); }
   [[nodiscard]] Index do_bytes() const final;
 
  private:
-  MatrixX<T> A0_, A_, factor_;  // m × m: J M⁻¹Jᵀ; with damping; its factor
+  void solve_multipliers(const T* right, T* lambda, T* work) const;
+
+  MatrixX<T> A0_;                  // m × m: J M⁻¹Jᵀ, its lower triangle
+  SymmetricTiles<T> A_, factor_;   // with damping; its factor
   BlockDiagonal<T> damping_;
   Report factored_M_, factored_A_;
 };
