@@ -19,7 +19,7 @@ struct Options {
   std::vector<std::string> scenes, ops;
   std::string baseline;
   double budget = 0.02, slack = 1.5;
-  bool as_json = false, table1 = false, peers = false, swimmers = false, solvers = false, choose = false, calibrate = false, ladders = false;
+  bool as_json = false, table1 = false, peers = false, simulation = false, swimmers = false, solvers = false, choose = false, calibrate = false, ladders = false;
   std::vector<std::string> compared, ladder_names;
   std::string from, probe, pictures;
   std::int64_t largest = 100000;
@@ -106,6 +106,7 @@ int run_bench(const Options& o) {
   if (!o.compared.empty()) return run_compare(o.compared, o.slack, o.as_json);
   if (o.table1) return run_table1({o.scenes, o.ops, o.from, o.probe, o.budget, o.as_json});
   if (o.peers) return run_peers({o.scenes, o.from, o.budget, o.as_json});
+  if (o.simulation) return run_simulation({o.scenes, o.from, 50 * o.budget, o.as_json});
   if (o.swimmers) return run_swimmers({o.from, o.pictures, o.budget, o.longest, o.gigabytes, o.largest, o.as_json});
   if (o.ladders) return run_ladders({o.ladder_names, o.ops, o.from, o.pictures, o.operations, o.gigabytes, o.as_json});
   if (!o.pictures.empty() && !o.solvers) throw ModelError("", "--pictures", "given without --swimmers, --ladders or --solvers", "one of these three; the others draw nothing");
@@ -139,22 +140,24 @@ void add_bench(options::Command& app, Run& run) {
   options::Option* table1 = c->add_flag("--table1", o->table1, "the paper's Table I: thirteen scenes, every column, every operator, beside the paper's figures (docs/results.md)");
   options::Option* peers = c->add_flag("--peers", o->peers, "beside Pinocchio and MuJoCo, those that this program was built with: results compared, then timed in turn (docs/peers.md)");
   peers->excludes(table1);
+  options::Option* simulation = c->add_flag("--simulation", o->simulation, "steps per second of the examples beside MuJoCo's, both judged by one residual; a row gets 50 budgets (docs/simulation_speed.md)");
+  simulation->excludes(table1)->excludes(peers);
   options::Option* swimmers = c->add_flag("--swimmers", o->swimmers, "the paper's Fig. 2: every operator on swimmers of growing length, with the slopes");
-  swimmers->excludes(table1)->excludes(peers);
+  swimmers->excludes(table1)->excludes(peers)->excludes(simulation);
   options::Option* ladders = c->add_flag("--ladders", o->ladders, "how counted operations grow on chains, trees, crowds, walls, lattices …: measured order against the declared one, crossovers (docs/ladders.md)");
-  ladders->excludes(table1)->excludes(peers)->excludes(swimmers);
+  ladders->excludes(table1)->excludes(peers)->excludes(simulation)->excludes(swimmers);
   c->add_option("ladder", o->ladder_names, "only these ladders")->needs(ladders);
   c->add_option("--operations", o->operations, "a row is left out where one of its phases would take more")->check(options::above(0, ""))->needs(ladders)->capture_default_str();
   options::Option* solvers = c->add_flag("--solvers", o->solvers, "contact solvers: success over the density of contacts, failures, performance profiles at 1e-4, 1e-8, 1e-12 (docs/solvers.md)");
-  solvers->excludes(table1)->excludes(peers)->excludes(swimmers)->excludes(ladders);
+  solvers->excludes(table1)->excludes(peers)->excludes(simulation)->excludes(swimmers)->excludes(ladders);
   c->add_option("--solver", o->of_solvers.solvers, "only these solvers")->needs(solvers);
   c->add_option("--problems", o->of_solvers.problems, "a folder of contact problems, *.dat, besides the generated ones")->needs(solvers);
   c->add_option("--seeds", o->of_solvers.seeds, "generated problems of each kind")->check(options::whole(1))->needs(solvers)->capture_default_str();
   c->add_option("--iterations", o->of_solvers.iterations, "that a solver has at most")->check(options::whole(1))->needs(solvers)->capture_default_str();
-  c->add_option("--from", o->from, "print what --table1, --peers, --swimmers, --ladders or --solvers wrote with --json instead of measuring");
+  c->add_option("--from", o->from, "print what --table1, --peers, --simulation, --swimmers, --ladders or --solvers wrote with --json instead of measuring");
   options::Option* choose = c->add_flag("--choose", o->choose, "1, 10 and 1000 answers at one configuration: the row that choose() names (algorithms/operators/choose.h) against the fastest, and from how many on explicit ones win; exit code 3 beyond 1.1");
-  choose->excludes(table1)->excludes(peers)->excludes(swimmers)->excludes(ladders);
-  c->add_flag("--calibrate", o->calibrate, "print algorithms/operators/kernel_costs.cpp, what choose() counts with, as measured here; how well it fits to standard error")->excludes(table1)->excludes(peers)->excludes(swimmers)->excludes(ladders)->excludes(choose);
+  choose->excludes(table1)->excludes(peers)->excludes(simulation)->excludes(swimmers)->excludes(ladders);
+  c->add_flag("--calibrate", o->calibrate, "print algorithms/operators/kernel_costs.cpp, what choose() counts with, as measured here; how well it fits to standard error")->excludes(table1)->excludes(peers)->excludes(simulation)->excludes(swimmers)->excludes(ladders)->excludes(choose);
   c->add_option("--largest", o->largest, "links of the longest swimmer")->check(options::whole(3))->needs(swimmers)->capture_default_str();
   c->add_option("--longest", o->longest, "an operator is left out where one of its phases would take longer [s]")->check(options::above(0, "s"))->needs(swimmers)->capture_default_str();
   c->add_option("--memory", o->gigabytes, "or it would hold more [GB], with --swimmers or --ladders")->check(options::above(0, "GB"))->capture_default_str();
@@ -165,7 +168,7 @@ void add_bench(options::Command& app, Run& run) {
   c->add_option("--slack", o->slack, "how many times slower than the baseline is still accepted")->check(options::above(0, ""))->capture_default_str();
   c->add_flag("--json", o->as_json, "{machine, units, scenes}");
   add_scene_options(*c, o->opening);
-  c->footer("Times are the lowest of several batches; medians with --table1, --peers and --swimmers. Exit code 1 when a peer disagrees with the definition; 3 when a phase is slower than slack × baseline or needs "
+  c->footer("Times are the lowest of several batches; medians with --table1, --peers, --simulation and --swimmers. Exit code 1 when a peer disagrees with the definition; 3 when a phase is slower than slack × baseline or needs "
             "more counted operations; with --compare, significantly.");
   c->callback([=, &run] { run = [=] { return run_bench(*o); }; });
 }

@@ -10,6 +10,7 @@
 #include "bench/phase_times.h"
 #include "bench/report.h"
 #include "bench/scaling.h"
+#include "bench/simulation_speed.h"
 #include "bench/solver_profile.h"
 #include "bench/table1.h"
 #include "bench/text.h"
@@ -69,6 +70,18 @@ int run_peers(const PeersOptions& o) {
   }
   print(t, o.as_json, bench::peer_text);
   return o.from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, "scenes are missing") : good;
+}
+
+int run_simulation(const SimulationOptions& o) {
+  bench::SimulationSpeed t;
+  if (!o.from.empty()) {
+    t = read_results<bench::SimulationSpeed>(o.from, "what `delassus bench --simulation --json` prints; write it with > FILE");
+  } else {
+    keep_on_interrupt();
+    t = bench::measure_speed(o.scenes, bench::simulators(), o.budget, say, interrupted);
+  }
+  print(t, o.as_json, bench::speed_text);
+  return o.from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, "examples are missing") : good;
 }
 
 int run_swimmers(const SwimmersOptions& o) {

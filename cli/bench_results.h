@@ -1,4 +1,4 @@
-// `delassus bench --table1`, `--peers`, `--swimmers`, `--ladders`, `--solvers`, `--choose` and `--compare`: results measured, or printed from files of results.
+// `delassus bench --table1`, `--peers`, `--simulation`, `--swimmers`, `--ladders`, `--solvers`, `--choose` and `--compare`: results measured, or printed from files of results.
 #pragma once
 
 #include <string>
@@ -16,6 +16,12 @@ struct PeersOptions {
   std::vector<std::string> scenes;
   std::string from;          ///< results to print instead of measuring
   double budget = 0.02;
+  bool as_json = false;
+};
+struct SimulationOptions {
+  std::vector<std::string> scenes;
+  std::string from;          ///< results to print instead of measuring
+  double budget = 1;
   bool as_json = false;
 };
 struct SwimmersOptions {
@@ -47,6 +53,7 @@ struct ChooseOptions {
 // They return the exit code.
 [[nodiscard]] int run_table1(const Table1Options& o);
 [[nodiscard]] int run_peers(const PeersOptions& o);
+[[nodiscard]] int run_simulation(const SimulationOptions& o);
 [[nodiscard]] int run_swimmers(const SwimmersOptions& o);
 [[nodiscard]] int run_ladders(const LaddersOptions& o);
 [[nodiscard]] int run_solvers(const SolversOptions& o);

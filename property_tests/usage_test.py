@@ -59,6 +59,8 @@ refused([delassus, "bench", "--budget", "0"], "--budget", "'0'", "a finite numbe
 misspelt([delassus, "bench", "--table1", "--swimmers"], "--swimmers", "--table1")
 misspelt([delassus, "bench", "--peers", "--table1"], "--peers", "--table1")
 refused([delassus, "bench", "--peers", "--from", "/nowhere/peers.json"], "/nowhere/peers.json", "cannot be read", "--peers --json")
+misspelt([delassus, "bench", "--simulation", "--peers"], "--simulation", "--peers")
+refused([delassus, "bench", "--simulation", "--from", "/nowhere/speed.json"], "/nowhere/speed.json", "cannot be read", "--simulation --json")
 refused([delassus, "bench", "--table1", "--from", "/nowhere/table1.json"], "/nowhere/table1.json", "cannot be read", "--table1 --json")
 refused([delassus, "bench", "--table1", "--scene", "swimmer:1", "--cache-lines", "/nowhere/phase_probe"], "/nowhere/phase_probe")
 refused([delassus, "bench", "--solvers", "--from", "/nowhere/solvers.json"], "/nowhere/solvers.json", "cannot be read", "--solvers --json")

@@ -89,11 +89,12 @@ struct MujocoWitness::State {
   Matrix T;               ///< qvel = T ν
   Matrix J;               ///< m × nv, in qvel
 
-  explicit State(const Model& described);
+  State(const Model& described, const MujocoMore& more);
   void set_armature(Index i);
   void set_anchors();
   void set_joint(Index i, const double* q);
-  void set_rates(Index i, const double* q);
+  void read_joint(Index i, double* q) const;
+  void rates(Index i, const double* q, Matrix& out) const;
   void set_rows();
 
   int joint(Index i, std::size_t k) const { return compiled->body_jntadr[body[i]] + static_cast<int>(k); }
@@ -106,9 +107,9 @@ struct MujocoWitness::State {
   Matrix term_rows(const Constraint& c) const;
 };
 
-MujocoWitness::State::State(const Model& described) : model(described) {
+MujocoWitness::State::State(const Model& described, const MujocoMore& more) : model(described) {
   mju_user_warning = [](const char*) {};  // otherwise MuJoCo writes a log file; `set` looks at the counts
-  compiled = compile(mujoco_xml(model));
+  compiled = compile(mujoco_xml(model, more));
   for (Index i = 0; i < static_cast<Index>(model.bodies.size()); ++i) {
     body.push_back(mj_name2id(compiled.get(), mjOBJ_BODY, mujoco_name(i).c_str()));
     set_armature(i);
@@ -163,8 +164,26 @@ void MujocoWitness::State::set_joint(Index i, const double* q) {
   }
 }
 
+/// set_joint, the other way.
+void MujocoWitness::State::read_joint(Index i, double* q) const {
+  const std::vector<MujocoJoint> joints = mujoco_joints(model.bodies[i]);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const double* from = data->qpos + compiled->jnt_qposadr[joint(i, k)];
+    double* to = q + joints[k].q;
+    if (joints[k].kind == MujocoJoint::Kind::ball) std::copy(from, from + 4, to);
+    else if (joints[k].kind != MujocoJoint::Kind::free) to[0] = from[0];
+    else {
+      double back[4], away[3];
+      mju_negQuat(back, compiled->body_quat + 4 * body[i]);
+      mju_sub3(away, from, compiled->body_pos + 3 * body[i]);
+      mju_rotVecQuat(to, away, back);
+      mju_mulQuat(to + 3, back, from + 3);
+    }
+  }
+}
+
 /// The columns of T of one joint; after the poses are known.
-void MujocoWitness::State::set_rates(Index i, const double* q) {
+void MujocoWitness::State::rates(Index i, const double* q, Matrix& out) const {
   const Body& b = model.bodies[i];
   const std::vector<MujocoJoint> joints = mujoco_joints(b);
   const Index first = model.first_dof[i];
@@ -174,17 +193,17 @@ void MujocoWitness::State::set_rates(Index i, const double* q) {
     RowMajor<3> R;
     if (j.kind == MujocoJoint::Kind::free) {
       std::copy_n(data->xmat + 9 * body[i], 9, R.data());
-      T.block<3, 3>(row, first + 3) = R;
-      T.block<3, 3>(row + 3, first).setIdentity();
+      out.block<3, 3>(row, first + 3) = R;
+      out.block<3, 3>(row + 3, first).setIdentity();
     } else if (j.kind == MujocoJoint::Kind::ball) {
-      T.block<3, 3>(row, first + j.dof).setIdentity();
+      out.block<3, 3>(row, first + j.dof).setIdentity();
     } else if (b.joint.type == JointType::floating) {  // a slide along axis j.dof − 3 of the joint frame
       double turn[4] = {q[3], q[4], q[5], q[6]};
       mju_normalize4(turn);
       mju_quat2Mat(R.data(), turn);
-      T.block<1, 3>(row, first + 3) = R.row(j.dof - 3);
+      out.block<1, 3>(row, first + 3) = R.row(j.dof - 3);
     } else {
-      T(row, first + j.dof) = 1;
+      out(row, first + j.dof) = 1;
     }
   }
 }
@@ -244,7 +263,7 @@ void MujocoWitness::State::set_rows() {
   Index rows = 0;
   int connected = 0;
   for (const Constraint& c : model.constraints) rows += row_count(model, c), connected += c.kind == Kind::point ? 3 : 0;
-  if (data->ne != connected) throw std::runtime_error("MuJoCo left out rows of a connect constraint");
+  if (data->ne < connected) throw std::runtime_error("MuJoCo left out rows of a connect constraint");
   J.resize(rows, nv());
   rows = connected = 0;
   for (const Constraint& c : model.constraints) {
@@ -257,7 +276,7 @@ void MujocoWitness::State::set_rows() {
   }
 }
 
-MujocoWitness::MujocoWitness(const Model& model) : state_(std::make_unique<State>(model)) {}
+MujocoWitness::MujocoWitness(const Model& model, const MujocoMore& more) : state_(std::make_unique<State>(model, more)) {}
 MujocoWitness::~MujocoWitness() = default;
 
 void MujocoWitness::set(const VectorX<double>& q) {
@@ -270,9 +289,20 @@ void MujocoWitness::set(const VectorX<double>& q) {
   for (int k = 0; k < mjNWARNING; ++k)
     if (s.data->warning[k].number != 0)
       throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(k, s.data->warning[k].lastinfo));
-  s.T = Matrix::Zero(s.nv(), s.nv());
-  for (Index i = 0; i < bodies; ++i) s.set_rates(i, q.data() + s.model.first_q[i]);
+  s.T = T(q);
   s.set_rows();
+}
+
+VectorX<double> MujocoWitness::q() const {
+  VectorX<double> out(state_->model.q_size());
+  for (Index i = 0; i < static_cast<Index>(state_->model.bodies.size()); ++i) state_->read_joint(i, out.data() + state_->model.first_q[i]);
+  return out;
+}
+
+MatrixX<double> MujocoWitness::T(const VectorX<double>& q) const {
+  Matrix out = Matrix::Zero(state_->nv(), state_->nv());
+  for (Index i = 0; i < static_cast<Index>(state_->model.bodies.size()); ++i) state_->rates(i, q.data() + state_->model.first_q[i], out);
+  return out;
 }
 
 MatrixX<double> MujocoWitness::M() const {

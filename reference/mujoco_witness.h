@@ -42,15 +42,24 @@ struct MujocoJoint {
 
 /// The name of body i in MuJoCo: b<i>.
 [[nodiscard]] std::string mujoco_name(Index body);
+/// The name of joint k of a body's mujoco_joints: b<i>.<k>.
+[[nodiscard]] std::string mujoco_name(Index body, std::size_t joint);
+
+/// What a text says beyond bodies, joints and points, for who lets the model move (bench/peers/mujoco_scene.h).
+struct MujocoMore {
+  std::vector<std::string> in_body;              ///< per body: elements of it, geoms say; empty: none
+  std::string in_world, assets, equalities, behind;  ///< elements of these sections; behind: further sections
+  std::size_t rows = 0, contacts = 0;            ///< room besides that of the points
+};
 /// The mechanism as MJCF text. @throws ModelError naming the body that MuJoCo cannot represent.
-[[nodiscard]] std::string mujoco_xml(const Model& model);
+[[nodiscard]] std::string mujoco_xml(const Model& model, const MujocoMore& more = {});
 
 /// MuJoCo's M, J and A0 of a model, in our ν and rows.
 class MujocoWitness {
  public:
   /// @throws ModelError for a body that is not served, or with MuJoCo's message when it refuses the text.
   /// Replaces MuJoCo's process-wide handler of warnings; a warning becomes an exception of `set`.
-  explicit MujocoWitness(const Model& model);
+  explicit MujocoWitness(const Model& model, const MujocoMore& more = {});
   ~MujocoWitness();
 
   /// Takes the mechanism to q (size q_size). @throws std::runtime_error when MuJoCo warns, of a lost pivot say;
@@ -63,6 +72,10 @@ class MujocoWitness {
   /// MuJoCo's own, for who asks it for more (bench/peers); body i is mujoco_name(i).
   [[nodiscard]] mjModel_& compiled();
   [[nodiscard]] mjData_& data();
+  /// Our q of its qpos; its frames need not be computed.
+  [[nodiscard]] VectorX<double> q() const;
+  /// T at q, by the frames that it computed last. n × n.
+  [[nodiscard]] MatrixX<double> T(const VectorX<double>& q) const;
 
  private:
   struct State;

@@ -57,9 +57,9 @@ void check_served(const Body& body) {
 }
 
 /// Armature of ball and free joints is set in the compiled model, axis by axis.
-std::string joint_text(const Body& body, const MujocoJoint& joint) {
+std::string joint_text(const Body& body, const MujocoJoint& joint, const std::string& name) {
   static constexpr const char* names[] = {"hinge", "slide", "ball", "free"};
-  std::string text = std::string("<joint type=\"") + names[static_cast<std::size_t>(joint.kind)] + "\"";
+  std::string text = "<joint name=\"" + name + "\" type=\"" + names[static_cast<std::size_t>(joint.kind)] + "\"";
   if (joint.kind == Kind::hinge || joint.kind == Kind::slide) {
     text += attribute("pos", Vector3<double>(0, 0, 0)) + attribute("axis", joint.axis);
     if (!body.joint.armature.empty()) text += attribute("armature", body.joint.armature[joint.dof]);
@@ -67,14 +67,16 @@ std::string joint_text(const Body& body, const MujocoJoint& joint) {
   return text + "/>";
 }
 
-void body_text(const Model& model, const std::vector<std::vector<Index>>& children, Index i, std::string& text) {
+void body_text(const Model& model, const std::vector<std::vector<Index>>& children, const MujocoMore& more, Index i, std::string& text) {
   const Body& body = model.bodies[i];
   check_served(body);
   text += "<body name=\"" + mujoco_name(i) + "\"" + attribute("pos", body.joint.placement.translation) +
           quaternion(body.joint.placement.rotation) + ">\n" + inertia_text(body) + "\n";
-  for (const MujocoJoint& joint : mujoco_joints(body)) text += joint_text(body, joint);
+  std::size_t k = 0;
+  for (const MujocoJoint& joint : mujoco_joints(body)) text += joint_text(body, joint, mujoco_name(i, k++));
   text += "\n";
-  for (const Index child : children[static_cast<std::size_t>(i)]) body_text(model, children, child, text);
+  if (!more.in_body.empty()) text += more.in_body[static_cast<std::size_t>(i)];
+  for (const Index child : children[static_cast<std::size_t>(i)]) body_text(model, children, more, child, text);
   text += "</body>\n";
 }
 
@@ -120,19 +122,21 @@ std::vector<MujocoJoint> mujoco_joints(const Body& body) {
 
 std::string mujoco_name(Index body) { return std::to_string(body).insert(0, 1, 'b'); }
 
-std::string mujoco_xml(const Model& model) {
+std::string mujoco_name(Index body, std::size_t joint) { return mujoco_name(body) + "." + std::to_string(joint); }
+
+std::string mujoco_xml(const Model& model, const MujocoMore& more) {
   std::vector<std::vector<Index>> children(model.bodies.size());
   for (std::size_t i = 0; i < model.bodies.size(); ++i)
     if (model.bodies[i].parent != ground)
       children[static_cast<std::size_t>(model.bodies[i].parent)].push_back(static_cast<Index>(i));
   std::string text =
       "<mujoco>\n<compiler coordinate=\"local\" angle=\"radian\" autolimits=\"false\" inertiafromgeom=\"false\" "
-      "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" settotalmass=\"-1\" fusestatic=\"false\"/>\n<size njmax=\"" + std::to_string(room_for_rows(model)) + "\"/>\n"
+      "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" settotalmass=\"-1\" fusestatic=\"false\"/>\n<size njmax=\"" + std::to_string(room_for_rows(model) + more.rows) + "\" nconmax=\"" + std::to_string(100 + more.contacts) + "\"/>\n"
       "<option gravity=\"0 0 0\" jacobian=\"dense\">\n<flag equality=\"enable\" contact=\"disable\" limit=\"disable\" "
-      "frictionloss=\"disable\" gravity=\"disable\"/>\n</option>\n<worldbody>\n";
+      "frictionloss=\"disable\" gravity=\"disable\"/>\n</option>\n<asset>\n" + more.assets + "</asset>\n<worldbody>\n" + more.in_world;
   for (std::size_t i = 0; i < model.bodies.size(); ++i)
-    if (model.bodies[i].parent == ground) body_text(model, children, static_cast<Index>(i), text);
-  return text + "</worldbody>\n<equality>\n" + equality_text(model) + "</equality>\n</mujoco>\n";
+    if (model.bodies[i].parent == ground) body_text(model, children, more, static_cast<Index>(i), text);
+  return text + "</worldbody>\n<equality>\n" + equality_text(model) + more.equalities + "</equality>\n" + more.behind + "</mujoco>\n";
 }
 
 }  // namespace delassus::reference

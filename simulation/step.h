@@ -38,6 +38,7 @@ template <class T> class Simulation {
   [[nodiscard]] const StepReport& last() const { return report_; }
   [[nodiscard]] const VectorX<T>& impulses() const { return impulses_; }  ///< of the rows of the last step, equations first [N s, N m s]
   [[nodiscard]] const VectorX<T>& change() const { return change_; }      ///< ν⁺ − ν of the last step, in the axes at its start
+  [[nodiscard]] const VectorX<T>& force() const { return force_; }        ///< of the last step, without rows, what is implicit at its end [N, N m]
   /// The numbers of the last step: S, H, M̂'s diagonal, rows that always hold.
   [[nodiscard]] const Problem<T>& problem() const { return problem_; }
   [[nodiscard]] const std::vector<RowSet<T>>& rows() const { return rows_; }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "bench/peers/simulator.h"
+
 namespace delassus::bench {
 
 const char* name(Step s) {
@@ -19,6 +21,26 @@ std::vector<PeerRow> peers() {
   add(mujoco_peers());
 #endif
   return all;
+}
+
+std::vector<SimulatorRow> simulators() {
+#ifdef DELASSUS_PEER_MUJOCO
+  return mujoco_simulators();
+#else
+  return {};
+#endif
+}
+
+Constraint contact_in_world(const Poses<double>& at, Index body, Index other, const Vector3<double>& point, const Matrix3<double>& axes, double friction) {
+  Constraint c;
+  c.kind = Constraint::Kind::contact;
+  c.friction = friction;
+  const auto in = [&](Index b) {
+    const Pose<double> pose = world_pose(at, b);
+    return Frame{b, {pose.rotation.transpose() * axes, pose.rotation.transpose() * (point - pose.translation)}};
+  };
+  c.a = in(body), c.b = in(other);
+  return c;
 }
 
 }  // namespace delassus::bench
