@@ -28,7 +28,7 @@ template <class T> SolverReport NewtonConvex<T>::do_solve(const ContactProblem<T
     const auto out = newton_.minimise(R_inverse_, b_, 0, wanted.iterations, lambda);
     made = out.report;
     report.iterations = out.iterations;
-    report.gap = out.gap;
+    if (made.ok()) report.gap = newton_.gap(lambda);
   }
   report.status = made.status;
   report.where = static_cast<Index>(made.where);

@@ -27,13 +27,14 @@ template <class T> void PrimalNewton<T>::analyze(const ContactProblem<T>& p) {
   H_.diagonal.assign(static_cast<std::size_t>(p.rows()), T(0));
   H_.blocks.clear();
   block_of_.assign(p.groups.size(), 0);
+  projected_.assign(p.groups.size(), {});
   for (std::size_t e = 0; e < p.groups.size(); ++e) {
     if (p.groups[e].cone != Cone::coulomb) continue;
     block_of_[e] = H_.blocks.size();
     H_.blocks.push_back({p.groups[e].row, MatrixX<T>::Zero(p.groups[e].rows, p.groups[e].rows)});
   }
   for (VectorX<T>* const v : {&w_, &Mw_, &d_, &Md_, &tau_}) v->setZero(s.dofs());
-  for (VectorX<T>* const v : {&u_, &Jd_, &moved_, &trial_, &origin_, &gained_}) v->setZero(p.rows());
+  for (VectorX<T>* const v : {&u_, &Jd_, &moved_, &trial_, &origin_, &gained_, &root_, &mu_, &scaled_}) v->setZero(p.rows());
 }
 
 template <class T> Report PrimalNewton<T>::start(const ContactProblem<T>& p) {
@@ -54,44 +55,62 @@ template <class T> void PrimalNewton<T>::begin_from(const VectorX<T>& lambda) {
   origin_ = lambda;
 }
 
-// λ and H of one group; in the metric R⁻¹ a cone is scaled by R^½ of each row.
-template <class T> void PrimalNewton<T>::cone(const ConeRows& c, std::size_t e, const T* R_inverse, const T* u, T* lambda) {
+// In the metric R⁻¹ a cone is scaled by R^½ of each row.
+template <class T> void PrimalNewton<T>::take(const VectorX<T>& R_inverse) {
   using std::sqrt;
-  if (c.cone != Cone::coulomb) {
+  for (const ConeRows& c : problem_->groups) {
+    if (c.cone != Cone::coulomb || problem_->is_off(c)) continue;
     for (Index r = c.row; r < c.row + c.rows; ++r) {
-      const T free = -u[r] / R_inverse[r];
-      lambda[r] = free;
-      project(*problem_, {c.cone, r, 1}, lambda + r);
-      H_.diagonal[static_cast<std::size_t>(r)] = lambda[r] == free ? T(1) / R_inverse[r] : T(0);
+      root_[r] = T(1) / sqrt(R_inverse[r]);
+      mu_[r] = r == c.row ? T(0) : problem_->friction[static_cast<std::size_t>(r)] * root_[c.row] / root_[r];
     }
-    return;
   }
-  T root[max_cone_rows], mu[max_cone_rows], x[max_cone_rows];
-  for (Index k = 0; k < c.rows; ++k) {
-    root[k] = T(1) / sqrt(R_inverse[c.row + k]);
-    mu[k] = k == 0 ? T(0) : problem_->friction[static_cast<std::size_t>(c.row + k)] * root[0] / root[k];
-    x[k] = -root[k] * u[c.row + k];
+}
+
+// λ(u)
+template <class T> void PrimalNewton<T>::impulses(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda) {
+  for (std::size_t e = 0; e < problem_->groups.size(); ++e) {
+    const ConeRows& c = problem_->groups[e];
+    if (problem_->is_off(c)) {
+      lambda.segment(c.row, c.rows).setZero();
+    } else if (c.cone == Cone::coulomb) {
+      for (Index r = c.row; r < c.row + c.rows; ++r) scaled_[r] = -root_[r] * u[r];
+      projected_[e] = ConeProjection<T>::project(scaled_.data() + c.row, mu_.data() + c.row, c.rows);
+      for (Index r = c.row; r < c.row + c.rows; ++r) lambda[r] = root_[r] * scaled_[r];
+    } else {
+      for (Index r = c.row; r < c.row + c.rows; ++r) {
+        lambda[r] = -u[r] / R_inverse[r];
+        project(*problem_, {c.cone, r, 1}, lambda.data() + r);
+      }
+    }
   }
-  MatrixX<T>& H = H_.blocks[block_of_[e]].R_inverse;
-  const auto projected = ConeProjection<T>::project(x, mu, c.rows);
-  projected.derivative(x, mu, c.rows, H.data());
-  for (Index j = 0; j < c.rows; ++j) {
-    lambda[c.row + j] = root[j] * x[j];
-    for (Index i = 0; i < c.rows; ++i) H(i, j) *= root[i] * root[j];
+}
+
+// H at the u and λ of the last impulses.
+template <class T> void PrimalNewton<T>::curve(const VectorX<T>& R_inverse, const VectorX<T>& u, const VectorX<T>& lambda) {
+  for (std::size_t e = 0; e < problem_->groups.size(); ++e) {
+    const ConeRows& c = problem_->groups[e];
+    const bool off = problem_->is_off(c);
+    if (c.cone != Cone::coulomb) {
+      for (Index r = c.row; r < c.row + c.rows; ++r)
+        H_.diagonal[static_cast<std::size_t>(r)] = !off && lambda[r] == -u[r] / R_inverse[r] ? T(1) / R_inverse[r] : T(0);
+      continue;
+    }
+    MatrixX<T>& H = H_.blocks[block_of_[e]].R_inverse;
+    if (off) {
+      H.setZero();
+      continue;
+    }
+    projected_[e].derivative(scaled_.data() + c.row, mu_.data() + c.row, c.rows, H.data());
+    for (Index j = 0; j < c.rows; ++j)
+      for (Index i = 0; i < c.rows; ++i) H(i, j) *= root_[c.row + i] * root_[c.row + j];
   }
 }
 
 template <class T> void PrimalNewton<T>::evaluate(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda) {
-  for (std::size_t e = 0; e < problem_->groups.size(); ++e) {
-    const ConeRows& c = problem_->groups[e];
-    if (!problem_->is_off(c)) {
-      cone(c, e, R_inverse.data(), u.data(), lambda.data());
-      continue;
-    }
-    lambda.segment(c.row, c.rows).setZero();
-    if (c.cone == Cone::coulomb) H_.blocks[block_of_[e]].R_inverse.setZero();
-    else std::fill_n(H_.diagonal.begin() + c.row, c.rows, T(0));
-  }
+  take(R_inverse);
+  impulses(R_inverse, u, lambda);
+  curve(R_inverse, u, lambda);
 }
 
 template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd) {
@@ -104,26 +123,22 @@ template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, V
   return report;
 }
 
-// φ'(α) and φ''(α) = dᵀM d + (J d)ᵀH (J d)
-template <class T> typename PrimalNewton<T>::Slope PrimalNewton<T>::slope(const VectorX<T>& R_inverse, const T& alpha) {
-  moved_ = u_ + alpha * Jd_;
-  evaluate(R_inverse, moved_, trial_);
-  weights_.assign(H_);
-  Slope s{d_.dot(Mw_) + alpha * d_.dot(Md_) - Jd_.dot(trial_ - origin_), d_.dot(Md_)};
-  weights_.multiply(Jd_.data(), moved_.data());
-  s.curvature += Jd_.dot(moved_);
-  return s;
-}
-
 template <class T> T PrimalNewton<T>::length(const VectorX<T>& R_inverse) {
   using std::abs;
-  const T start = abs(slope(R_inverse, T(0)).value);
+  const T dMw = d_.dot(Mw_), dMd = d_.dot(Md_);
+  const T start = abs(dMw - Jd_.dot(gained_));  // φ'(0): direction has left λ − λ₀
   T low(0), high(0), alpha(1);
   for (int k = 0; k < 60; ++k) {
-    const Slope s = slope(R_inverse, alpha);
-    if (abs(s.value) <= T(1e-10) * start) break;
-    (s.value < T(0) ? low : high) = alpha;
-    T next = alpha - s.value / s.curvature;
+    moved_ = u_ + alpha * Jd_;
+    impulses(R_inverse, moved_, trial_);
+    const T value = dMw + alpha * dMd - Jd_.dot(trial_ - origin_);
+    if (abs(value) <= T(1e-10) * start) break;
+    (value < T(0) ? low : high) = alpha;
+    curve(R_inverse, moved_, trial_);
+    weights_.assign(H_);
+    weights_.multiply(Jd_.data(), moved_.data());
+    const T curvature = dMd + Jd_.dot(moved_);  // φ''(α) = dᵀM d + (J d)ᵀH (J d)
+    T next = alpha - value / curvature;
     if (high > T(0) && !(next > low && next < high)) next = low + (high - low) / T(2);
     if (!(next > low) || next == alpha) break;
     alpha = next;
@@ -135,12 +150,14 @@ template <class T>
 typename PrimalNewton<T>::Outcome PrimalNewton<T>::minimise(const VectorX<T>& R_inverse, const VectorX<T>& b, double velocity, int iterations, VectorX<T>& lambda) {
   Outcome out;
   double before = std::numeric_limits<double>::infinity();
+  take(R_inverse);
   for (bool last = false;; ++out.iterations) {
     tree_->J(w_, u_);
     u_ += b;
     tree_->M(w_, Mw_);
-    evaluate(R_inverse, u_, lambda);
-    if (last || out.iterations == iterations) break;
+    impulses(R_inverse, u_, lambda);
+    if (last || out.iterations == iterations) return out;
+    curve(R_inverse, u_, lambda);
     out.report = direction(lambda, d_, Jd_);
     if (!out.report.ok()) return out;
     tree_->M(d_, Md_);
@@ -151,12 +168,14 @@ typename PrimalNewton<T>::Outcome PrimalNewton<T>::minimise(const VectorX<T>& R_
     last = !(step > std::max(velocity, floor)) || (step < 1e3 * floor && step >= before);
     before = step;
   }
-  // Fenchel: ½ wᵀMw + ℓ(u) + ½ λᵀ(G + R⁻¹)λ + λᵀb at λ(u) is ½ ‖w − M⁻¹Jᵀ(λ − λ₀)‖²_M
+}
+
+// Fenchel: ½ wᵀMw + ℓ(u) + ½ λᵀ(G + R⁻¹)λ + λᵀb at λ(u) is ½ ‖w − M⁻¹Jᵀ(λ − λ₀)‖²_M
+template <class T> double PrimalNewton<T>::gap(const VectorX<T>& lambda) {
   gained_ = lambda - origin_;
   tree_->J_transposed(gained_, tau_);
   tau_ = Mw_ - tau_;
-  if (tree_->M_inverse(tau_, d_).ok()) out.gap = static_cast<double>(T(0.5) * d_.dot(tau_));
-  return out;
+  return tree_->M_inverse(tau_, d_).ok() ? static_cast<double>(T(0.5) * d_.dot(tau_)) : -1;
 }
 
 template class PrimalNewton<double>;

@@ -6,7 +6,8 @@
 //   gradient  M w − Jᵀ(λ(u) − λ₀)
 //   Hessian   M + JᵀH J,  H_c = R^½ Π̂' R^½ ≥ 0, 3 × 3 for a contact, 0 where it is open
 //   step      d = (M + JᵀH J)⁻¹ (Jᵀ(λ − λ₀) − M w): the factor of lcaba with H as weights. Only H changes: update_weights.
-//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ (λ(u + α J d) − λ₀), which increases: Newton within a bracket, O(m) each
+//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ (λ(u + α J d) − λ₀), which increases: Newton within a bracket, O(m) each;
+//             φ''(α), and with it H, only where α is not it
 // Cost     O(n + m) an iteration with local loops. Nothing allocates after analyze.
 // Source   E. Todorov 2014 (MuJoCo); A. Castro, F. Permenter, X. Han 2022 (SAP). The factor: paper, Algorithm 4.
 #pragma once
@@ -36,10 +37,11 @@ template <class T> class PrimalNewton {
   struct Outcome {
     Report report;
     int iterations = 0;
-    double gap = -1;  ///< duality gap at (w, λ) [J]
   };
   /// Minimises with R⁻¹ > 0 (m) and b (m) from the w it holds, until the step moves no row by more than `velocity` [m/s], or cannot.
   Outcome minimise(const VectorX<T>& R_inverse, const VectorX<T>& b, double velocity, int iterations, VectorX<T>& lambda);
+  /// Duality gap at w and the λ of minimise [J]; −1: M is singular.
+  [[nodiscard]] double gap(const VectorX<T>& lambda);
   [[nodiscard]] const VectorX<T>& motion() const { return w_; }  ///< w, shape n
 
   // One step taken apart, for tests of the Hessian.
@@ -50,11 +52,9 @@ template <class T> class PrimalNewton {
   [[nodiscard]] Report direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd);
 
  private:
-  struct Slope {
-    T value, curvature;
-  };
-  void cone(const ConeRows& c, std::size_t e, const T* R_inverse, const T* u, T* lambda);
-  Slope slope(const VectorX<T>& R_inverse, const T& alpha);
+  void take(const VectorX<T>& R_inverse);
+  void impulses(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
+  void curve(const VectorX<T>& R_inverse, const VectorX<T>& u, const VectorX<T>& lambda);
   T length(const VectorX<T>& R_inverse);
   const ContactProblem<T>* problem_ = nullptr;
   Plan plan_;
@@ -63,7 +63,9 @@ template <class T> class PrimalNewton {
   std::unique_ptr<TreeOperators<T>> tree_;
   std::unique_ptr<Workspace<T>> work_;
   Damping<T> H_;
-  std::vector<std::size_t> block_of_;  // per group
+  std::vector<std::size_t> block_of_;           // per group
+  std::vector<ConeProjection<T>> projected_;    // per group, of the last λ(u)
+  VectorX<T> root_, mu_, scaled_;               // of Coulomb rows: R^½, coefficients in the metric R⁻¹, Π̂
   VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, moved_, trial_, tau_, origin_, gained_;
 };
 
