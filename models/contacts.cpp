@@ -3,12 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include <stdexcept>
+
 #include <Eigen/Geometry>
 
 #include "models/box_contacts.h"
 #include "models/capsule_box.h"
+#include "models/convex_contacts.h"
+#include "models/farthest.h"
+#include "models/hull.h"
 
 namespace delassus {
+
+/// Of each hull its surface, where one is found.
+struct HullSurfaces {
+  struct Entry {
+    std::shared_ptr<const std::vector<Vector3<double>>> points;
+    Polytope surface;
+  };
+  std::vector<Entry> all;  // by address of the points
+};
+
 namespace {
 
 using V3 = Vector3<double>;
@@ -83,44 +98,13 @@ void drop_repeated(std::vector<ContactPoint>& found) {
   found = std::move(out);
 }
 
-/// The first candidate that no later one beats by a clear lead; of those that reach as far, the deepest.
-std::size_t best_of(const std::vector<ContactPoint>& found, double lead, const std::vector<double>& reach) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < found.size(); ++i) {
-    const double d = reach[i] - reach[best];
-    if (d > lead || (d >= -lead && found[i].gap < found[best].gap - lead)) best = i;
-  }
-  return best;
-}
-
-/// The deepest point, the farthest from it on the plane, the farthest from the line through both, the farthest outside the
-/// triangle of the three; where all are on one line, the deepest and its ends. Ties, up to a millionth of the extent, go to the deeper one, then to the first; what reaches no
-/// farther than that is left out. Order as found.
+/// Those that reach farthest, in the order found.
 void keep_farthest(std::vector<ContactPoint>& found) {
-  double extent = 0;
-  for (const ContactPoint& c : found) extent = std::max(extent, (c.point - found[0].point).norm());
-  const double lead = 1e-6 * extent;
-  std::vector<std::size_t> kept;
-  auto at = [&](std::size_t k) -> const V3& { return found[kept[k]].point; };
-  auto take = [&](auto&& reach_of) {
-    std::vector<double> reach;
-    for (const ContactPoint& c : found) reach.push_back(reach_of(c.point));
-    const std::size_t i = best_of(found, lead, reach);
-    if (reach[i] > lead || kept.empty()) kept.push_back(i);
-  };
-  auto left_of = [&](const V3& a, const V3& b, const V3& x) { return V3(a[1] - b[1], b[0] - a[0], 0).normalized().dot(x - a); };
-  take([](const V3&) { return 0.0; });
-  take([&](const V3& x) { return (x - at(0)).norm(); });
-  if (kept.size() == 2) take([&](const V3& x) { return std::abs(left_of(at(0), at(1), x)); });
-  if (kept.size() == 2) {
-    take([&](const V3& x) { return (at(0) - at(1)).normalized().dot(x - at(0)); });
-  } else if (kept.size() == 3) {
-    const double side = left_of(at(0), at(1), at(2)) > 0 ? 1 : -1;
-    take([&](const V3& x) { return -std::min({side * left_of(at(0), at(1), x), side * left_of(at(1), at(2), x), side * left_of(at(2), at(0), x)}); });
-  }
-  std::sort(kept.begin(), kept.end());
+  std::vector<V3> at;
+  std::vector<double> gap;
+  for (const ContactPoint& c : found) at.push_back(c.point), gap.push_back(c.gap);
   std::vector<ContactPoint> out;
-  for (const std::size_t i : kept) out.push_back(found[i]);
+  for (const std::size_t i : farthest(at, gap)) out.push_back(found[i]);
   found = std::move(out);
 }
 
@@ -169,8 +153,30 @@ std::vector<ShapeContact> round_round(const Placed& a, const Placed& b, const V3
   return {{q + (b.shape->size[0] + gap / 2) * n, n, gap}};
 }
 
+const Polytope* surface_of(const HullSurfaces& hulls, const Shape& s) {
+  const auto it = std::lower_bound(hulls.all.begin(), hulls.all.end(), s.points, [](const auto& e, const auto& points) { return e.points < points; });
+  return it != hulls.all.end() && it->points == s.points ? &it->surface : nullptr;
+}
+
+ConvexShape convex(const Placed& p, const V3& shift, const HullSurfaces& hulls) {
+  const V3& size = p.shape->size;
+  const Pose<double> at{p.pose.rotation, p.pose.translation + shift};
+  switch (p.shape->kind) {
+    case Shape::Kind::cylinder: return placed_cylinder(size[0], size[1], at);
+    case Shape::Kind::sphere: return placed(segment_polytope(0), at, size[0]);
+    case Shape::Kind::capsule: return placed(segment_polytope(size[1]), at, size[0]);
+    case Shape::Kind::box: return placed(box_polytope(size), at, 0);
+    case Shape::Kind::hull: break;
+  }
+  return placed(*surface_of(hulls, *p.shape), at, 0);
+}
+
+bool is(const Placed& p, Shape::Kind kind) { return p.shape->kind == kind; }
+
 /// Contacts of a pair; `shift` takes positions of b's tree into a's.
-std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const V3& shift, double margin) {
+std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const V3& shift, double margin, const HullSurfaces& hulls) {
+  for (const Shape::Kind kind : {Shape::Kind::cylinder, Shape::Kind::hull})
+    if (is(a, kind) || is(b, kind)) return convex_contacts(convex(a, V3::Zero(), hulls), convex(b, shift, hulls), margin);
   const bool box_a = a.shape->kind == Shape::Kind::box, box_b = b.shape->kind == Shape::Kind::box;
   const PlacedBox A{a.shape->size, a.pose}, B{b.shape->size, {b.pose.rotation, b.pose.translation + shift}};
   if (box_a && box_b) return box_box(A, B, margin);
@@ -238,6 +244,20 @@ Pose<double> relative_pose(const Poses<double>& poses, Index in, Index body) {
   return {Rt * poses.rotation[j], Rt * (shift + (poses.position[j] - poses.position[i]))};
 }
 
+std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model) {
+  auto out = std::make_shared<HullSurfaces>();
+  for (const Body& body : model.bodies)
+    for (const Shape& s : body.shapes)
+      if (s.kind == Shape::Kind::hull && has_hulls()) {
+        try {
+          out->all.push_back({s.points, hull_polytope(*s.points)});
+        } catch (const std::runtime_error&) {  // counted where it is near something
+        }
+      }
+  std::sort(out->all.begin(), out->all.end(), [](const auto& a, const auto& b) { return a.points < b.points; });
+  return out;
+}
+
 std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses, const ContactSearch& search,
                                         std::vector<std::string>& notes) {
   std::vector<Placed> shapes;
@@ -248,22 +268,22 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
   if (search.ground)
     for (const Placed& p : shapes)
       if (!rests(search, p.body)) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
-  Index with_cylinder = 0, with_hull = 0;
+  const std::shared_ptr<const HullSurfaces> hulls = search.hulls != nullptr ? search.hulls : hull_surfaces(model);
+  Index without_surface = 0;
   for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
     const Placed &a = shapes[i], &b = shapes[j];
-    auto either = [&](Shape::Kind kind) { return a.shape->kind == kind || b.shape->kind == kind; };
-    if (either(Shape::Kind::hull) || either(Shape::Kind::cylinder)) {
-      ++(either(Shape::Kind::hull) ? with_hull : with_cylinder);
+    const auto lacks = [&](const Placed& p) { return is(p, Shape::Kind::hull) && surface_of(*hulls, *p.shape) == nullptr; };
+    if (lacks(a) || lacks(b)) {
+      ++without_surface;
       continue;
     }
     const V3 shift = reference_of(poses, b.body) - reference_of(poses, a.body);
     const double margin = margin_of(search, a.body, b.body);
-    for (const ShapeContact& c : pair_contacts(a, b, shift, margin))
+    for (const ShapeContact& c : pair_contacts(a, b, shift, margin, *hulls))
       if (c.gap <= margin)
         out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction)});
   }
-  if (with_cylinder > 0) notes.push_back(std::to_string(with_cylinder) + " near pairs with a cylinder were not tested for contact");
-  if (with_hull > 0) notes.push_back(std::to_string(with_hull) + " near pairs with a mesh were not tested for contact");
+  if (without_surface > 0) notes.push_back(std::to_string(without_surface) + " near pairs with a mesh were not tested for contact: qhull finds no surface of it");
   return out;
 }
 

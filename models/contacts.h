@@ -4,10 +4,12 @@
 //   ground   sphere: lowest point · box: vertices · capsule: lowest point of each end · cylinder: up to 4 rim points
 //            hull (of a mesh): vertices, of more than 4 those that reach farthest on the plane
 //   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
-//            edges), capsule–box at ends, edges and the deepest place, capsule–capsule at the closest points
-// Pairs that involve a cylinder or a hull and pairs of links of one robot are not tested; notes count the former.
+//            edges), capsule–box at ends, edges and the deepest place, capsule–capsule at the closest points; cylinders and
+//            hulls with these and each other: convex_contacts.h
+// Hulls of which qhull finds no surface meet the ground alone: notes count their pairs. Links of one robot are not tested against each other.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,12 +25,16 @@ struct ContactPoint {
   double friction = -1;                 ///< the smaller coefficient of the two shapes; negative: not given
 };
 
+struct HullSurfaces;
+[[nodiscard]] std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model);  ///< faces and edges of all hulls of the model
+
 struct ContactSearch {
   double margin = 1e-3;         ///< [m]
   bool ground = false;
   double ground_height = 0;     ///< [m]
   std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
   std::vector<double> ahead;    ///< per body [m]: as much is added to the margin, of a pair the larger; empty: nothing
+  std::shared_ptr<const HullSurfaces> hulls;  ///< those of the model, found once; null: found at each search
   const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: what rests is not looked for but against what does not; null: all
 };
 

@@ -11,16 +11,13 @@
 
 #include <Eigen/Geometry>
 
-#ifdef DELASSUS_QHULL
-#include <libqhull_r/qhull_ra.h>
-#endif
-
 namespace delassus {
 
 #ifndef DELASSUS_QHULL
 
 bool has_hulls() { return false; }
 Hull convex_hull(const std::vector<Vector3<double>>&, Index) { throw std::logic_error("built without qhull"); }
+HullFacets hull_facets(const std::vector<Vector3<double>>&) { throw std::logic_error("built without qhull"); }
 
 #else
 
@@ -30,72 +27,6 @@ using V3 = Vector3<double>;
 using Points = std::vector<V3>;
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
-
-/// The surface of a hull: triangles in space, edges in the plane (third index unused), outward normals.
-struct Surface {
-  struct Facet {
-    std::array<int, 3> corner;
-    V3 normal;
-    double offset;  // normal · x + offset: height above the facet
-  };
-  int dimension = 3;
-  std::vector<Facet> facets;
-};
-
-/// qhull's memory, released whatever happens.
-class Qhull {
- public:
-  Qhull() : errors_(open_memstream(&text_, &size_)) { qh_zero(&qh_, errors_); }
-  ~Qhull() {
-    int current = 0, total = 0;
-    qh_.NOerrexit = True;
-    qh_freeqhull(&qh_, !qh_ALL);
-    qh_memfreeshort(&qh_, &current, &total);
-    std::fclose(errors_);
-    std::free(text_);
-  }
-  Qhull(const Qhull&) = delete;
-  Qhull& operator=(const Qhull&) = delete;
-
-  /// The first line of qhull's complaint, or nothing.
-  std::string run(int dimension, std::vector<double>& numbers) {
-    char command[] = "qhull Qt";
-    const int n = static_cast<int>(numbers.size()) / dimension;
-    if (qh_new_qhull(&qh_, dimension, n, numbers.data(), False, command, nullptr, errors_) == 0) return "";
-    std::fflush(errors_);
-    const std::string said(text_, size_);
-    return said.empty() ? "qhull failed" : said.substr(0, said.find('\n'));
-  }
-
-  qhT qh_{};
-
- private:
-  char* text_ = nullptr;
-  std::size_t size_ = 0;
-  FILE* errors_;
-};
-
-/// The hull of x[i], i in `of`. @throws std::runtime_error with qhull's message.
-Surface surface(const Points& x, const std::vector<int>& of, int dimension) {
-  std::vector<double> numbers;
-  for (const int i : of)
-    for (int k = 0; k < dimension; ++k) numbers.push_back(x[z(i)][k]);
-  Qhull q;
-  if (const std::string said = q.run(dimension, numbers); !said.empty()) throw std::runtime_error(said);
-  Surface out;
-  out.dimension = dimension;
-  qhT* const qh = &q.qh_;
-  facetT* facet = nullptr;
-  vertexT *vertex = nullptr, **vertexp = nullptr;
-  FORALLfacets {
-    Surface::Facet f{{0, 0, 0}, V3::Zero(), facet->offset};
-    for (int k = 0; k < dimension; ++k) f.normal[k] = facet->normal[k];
-    std::size_t k = 0;
-    FOREACHvertex_(facet->vertices) f.corner[k++] = of[z(qh_pointid(qh, vertex->point))];
-    out.facets.push_back(f);
-  }
-  return out;
-}
 
 std::vector<int> vertices_of(const Surface& s) {
   std::set<int> out;
@@ -210,6 +141,9 @@ double scaled(const Points& points, Points& distinct, Points& x) {
   return size;
 }
 
+/// Thickness below which a set of points of size 1 is flat, by rounding; and where qhull may give up.
+constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), too_thin = 1e-9;
+
 }  // namespace
 
 bool has_hulls() { return true; }
@@ -221,7 +155,6 @@ Hull convex_hull(const std::vector<Vector3<double>>& points, Index most) {
   std::vector<int> of(x.size());
   std::iota(of.begin(), of.end(), 0);
   const Spread s = spread(x, of);
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   Hull out;
   std::vector<int> kept{0};
   const auto limit = static_cast<std::size_t>(most);
@@ -234,7 +167,7 @@ Hull convex_hull(const std::vector<Vector3<double>>& points, Index most) {
     try {
       kept = hull_of(x, of, 3, limit, out);
     } catch (const std::runtime_error&) {  // thicker than rounding, too thin for qhull
-      if (s.far[3] > 1e-9) throw;
+      if (s.far[3] > too_thin) throw;
       in_plane();
     }
   } else if (s.far[2] > rounding) {
@@ -246,6 +179,46 @@ Hull convex_hull(const std::vector<Vector3<double>>& points, Index most) {
   out.cut *= size;
   for (const int i : kept) out.vertices.push_back(distinct[z(i)]);
   std::sort(out.vertices.begin(), out.vertices.end(), before);
+  return out;
+}
+
+HullFacets hull_facets(const std::vector<Vector3<double>>& points) {
+  if (points.empty()) throw std::logic_error("hull_facets: needs points");
+  Points distinct, x;
+  scaled(points, distinct, x);
+  std::vector<int> of(x.size());
+  std::iota(of.begin(), of.end(), 0);
+  const Spread s = spread(x, of);
+  HullFacets out;
+  std::vector<int> corners{0};
+  auto found = [&](const Surface& surface) {
+    out.dimension = surface.dimension, out.facets = surface.facets, out.flat_normal = s.axes.col(2);
+    corners = vertices_of(surface);
+    std::map<int, int> place;
+    for (std::size_t k = 0; k < corners.size(); ++k) place[corners[k]] = static_cast<int>(k);
+    for (Surface::Facet& f : out.facets) {
+      for (int k = 0; k < surface.dimension; ++k) f.corner[z(k)] = place.at(f.corner[z(k)]);
+      if (surface.dimension == 2) f.normal = s.axes * f.normal;
+    }
+  };
+  auto in_plane = [&] {
+    Points flat = x;
+    for (V3& p : flat) p = s.axes.transpose() * p, p[2] = 0;
+    found(surface(flat, of, 2));
+  };
+  if (s.far[3] > rounding) {
+    try {
+      found(surface(x, of, 3));
+    } catch (const std::runtime_error&) {
+      if (s.far[3] > too_thin) throw;
+      in_plane();
+    }
+  } else if (s.far[2] > rounding) {
+    in_plane();
+  } else if (s.far[1] > 0) {
+    out.dimension = 1, corners = {0, s.corner[1]};
+  }
+  for (const int i : corners) out.vertices.push_back(distinct[z(i)]);
   return out;
 }
 

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "algorithms/kit/spatial.h"
+#include "models/facets.h"
 
 namespace delassus {
 
@@ -19,11 +19,22 @@ struct Hull {
   double cut = 0;                         ///< largest distance of a point of the whole hull from the kept one [as given]
 };
 
+/// The whole surface of a hull.
+struct HullFacets {
+  int dimension = 0;                      ///< 3: solid, 2: flat, 1: a line, 0: a point
+  std::vector<Vector3<double>> vertices;  ///< corners of the facets; the ends of a line; the point
+  std::vector<Surface::Facet> facets;     ///< in space: triangles; flat: edges (first two corners, normal in the plane); offsets unused
+  Vector3<double> flat_normal{0, 0, 1};   ///< of a flat one
+};
+
 /// Whether the library was built with qhull.
 [[nodiscard]] bool has_hulls();
 
 /// The hull of finite points, at least one, with at most `most` ≥ 10 vertices.
 /// @throws std::runtime_error with qhull's message when it finds no hull; std::logic_error without qhull.
 [[nodiscard]] Hull convex_hull(const std::vector<Vector3<double>>& points, Index most);
+
+/// The surface of the hull of finite points, at least one, of the thickness `convex_hull` sees. @throws as convex_hull.
+[[nodiscard]] HullFacets hull_facets(const std::vector<Vector3<double>>& points);
 
 }  // namespace delassus

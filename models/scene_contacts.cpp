@@ -47,7 +47,7 @@ void SceneLoader::detect(const Yaml* y) {
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
     y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
   Findings found(strict_);
-  if (scene_.has_ground)
+  if (scene_.has_ground || objects_ > 1)
     for (const Robot& r : robots_) add_hulls(scene_.model, r, vertices, search.margin, found);
   scene_.notes.insert(scene_.notes.end(), found.notes.begin(), found.notes.end());
   scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());

@@ -50,7 +50,8 @@ FILES = {
 
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
-    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp"], "BoxContacts CapsuleBox ContactLaws HullContacts ZeroSize SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp"], "BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts ZeroSize SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["convex_shape.cpp", "convex_axis.cpp", "closest_points.cpp", "rim_axis.cpp", "convex_face.cpp", "convex_contacts.cpp"], "ConvexContacts ContactLaws"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
                     "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
     **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
@@ -58,7 +59,7 @@ WAY_IN = {
     **dict.fromkeys(["sdf.cpp", "sdf_joints.cpp", "sdf_document.cpp", "sdf_said.cpp", "sdf_text.cpp", "sdf_counts.cpp"], "Sdf Formats RobotRefusals"),
     "scene_files.cpp": "SceneFile Scenes JointLimits Mjcf",
     **dict.fromkeys(["mjcf.cpp", "mjcf_shapes.cpp", "mjcf_equalities.cpp", "mjcf_compile.cpp", "mjcf_xml.cpp", "mjcf_said.cpp", "mjcf_newer.cpp"], "Mjcf Formats RobotRefusals"),
-    **dict.fromkeys(["mesh.cpp", "hull.cpp"], "Hull Mesh"), "closest.h": "Names JointLimits Refusals",
+    **dict.fromkeys(["mesh.cpp", "hull.cpp", "facets.cpp"], "Hull Mesh ConvexContacts"), "closest.h": "Names JointLimits Refusals",
     **dict.fromkeys(["kinematics.cpp", "mechanism.cpp", "mechanism_rows.cpp"], "kinematics moving integrate rows SceneLaws Description"), "constraints.cpp": "rows closure moving model SceneLaws",
     **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
     "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}

@@ -29,6 +29,13 @@ inline Shape random_shape(Kind kind, Random& r) {
   const V3 size(r.number(0.1, 0.2), r.number(0.3, 0.4), r.number(0.5, 0.6));
   s.size = kind == Kind::box ? size : kind == Kind::sphere ? V3(size[0], 0, 0) : V3(size[0], size[1], 0);
   s.placement = {r.rotation(), r.vector()};
+  if (kind == Kind::hull) {
+    std::vector<V3> points;
+    for (int k = 0; k < 12; ++k) points.push_back(size.cwiseProduct(r.unit()));
+    s.size.setZero();
+    for (const V3& x : points) s.size = s.size.cwiseMax(x.cwiseAbs());
+    s.points = std::make_shared<const std::vector<V3>>(points);
+  }
   return s;
 }
 
@@ -39,6 +46,11 @@ inline double support(const Shape& s, const V3& n) {
   switch (s.kind) {
     case Kind::sphere: return along + s.size[0] * n.norm();
     case Kind::capsule: return along + s.size[0] * n.norm() + s.size[1] * std::abs(local[2]);
+    case Kind::hull: {
+      double most = -1e9;
+      for (const V3& x : *s.points) most = std::max(most, local.dot(x));
+      return along + most;
+    }
     case Kind::cylinder: return along + s.size[0] * std::hypot(local[0], local[1]) + s.size[1] * std::abs(local[2]);
     default: return along + s.size.dot(local.cwiseAbs());
   }

@@ -1,6 +1,7 @@
 // Contacts, friction, bounce, limits and dry friction of joints in scenes that move, against closed forms.
 #include <gtest/gtest.h>
 
+#include "models/hull.h"
 #include "property_tests/unit/stepping_scenes.h"
 
 namespace delassus {
@@ -128,6 +129,78 @@ TEST(Contacts, stack_at_rest) {
     }
     EXPECT_NEAR(normal / h / g / (2 + ratio), 1, 3 * settings.residual / (h * g)) << ratio;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.state().q[7 * k + 2], 0.1 + 0.2 * k, 3 * n * h * settings.residual + 1e-12) << ratio;
+  }
+}
+
+Body cylinder(const std::string& name, double mass, double radius, double half, const Matrix3<double>& turn = Matrix3<double>::Identity()) {
+  const double across = mass * (3 * radius * radius + 4 * half * half) / 12, along = mass * radius * radius / 2;
+  Body b = body(name, ground, JointType::floating, mass, {0, 0, 0});
+  b.inertia = turn * V3(across, across, along).asDiagonal() * turn.transpose();
+  b.shapes.push_back({Shape::Kind::cylinder, V3(radius, half, 0), {turn, {0, 0, 0}}, -1, {}});
+  return b;
+}
+
+/// A box, as the hull of its corners.
+Body block(const std::string& name, double mass, const V3& half) {
+  Body b = box(name, mass, half);
+  std::vector<V3> corners;
+  for (int k = 0; k < 8; ++k) corners.emplace_back(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
+  b.shapes = {{Shape::Kind::hull, half, {}, -1, std::make_shared<const std::vector<V3>>(corners)}};
+  return b;
+}
+
+/// Stacks with cylinders and hulls: the ground gives the weight, nothing moves but by the residual, no contact comes or goes.
+TEST(Contacts, stacks_of_cylinders_and_hulls_at_rest) {
+  const Matrix3<double> lying = Eigen::AngleAxisd(M_PI / 2, V3::UnitY()).toRotationMatrix();
+  struct Stack {
+    std::string name;
+    std::vector<Body> bodies;
+    std::vector<double> half;  // heights
+    std::size_t points;
+  };
+  std::vector<Stack> stacks{
+      {"cylinder on a box", {box("box", 2, {0.2, 0.2, 0.1}), cylinder("cylinder", 1, 0.1, 0.15)}, {0.1, 0.15}, 8},
+      {"cylinder on cylinders", {cylinder("low", 1, 0.1, 0.1), cylinder("middle", 1, 0.1, 0.1), cylinder("high", 1, 0.1, 0.1)}, {0.1, 0.1, 0.1}, 12},
+      {"cylinder lying on a box", {box("box", 2, {0.2, 0.2, 0.1}), cylinder("cylinder", 1, 0.1, 0.15, lying)}, {0.1, 0.1}, 6},
+      {"box on a cylinder that lies on a box", {box("box", 2, {0.2, 0.2, 0.1}), cylinder("cylinder", 1, 0.1, 0.15), box("lid", 1, {0.2, 0.2, 0.05})}, {0.1, 0.15, 0.05}, 12},
+      {"hull on a cylinder", {cylinder("cylinder", 1, 0.2, 0.1), block("hull", 1, {0.1, 0.1, 0.1})}, {0.1, 0.1}, 8},
+      {"hull on a hull on a box", {box("box", 2, {0.2, 0.2, 0.1}), block("hull", 1, {0.1, 0.1, 0.1}), block("like it", 1, {0.1, 0.1, 0.1})}, {0.1, 0.1, 0.1}, 12},
+  };
+  for (const Stack& stack : stacks) {
+    SCOPED_TRACE(stack.name);
+    if (stack.name.find("hull") != std::string::npos && !has_hulls()) continue;
+    Model m;
+    double mass = 0;
+    for (const Body& b : stack.bodies) m.add(b), mass += b.mass;
+    Scene scene = on_the_ground(std::move(m), {0, 0, -g}, 0.5);
+    std::vector<double> at;
+    double top = 0;
+    for (std::size_t k = 0; k < stack.half.size(); ++k) {
+      at.push_back(top + stack.half[k]);
+      top += 2 * stack.half[k];
+      scene.q[static_cast<Index>(7 * k + 2)] = at[k];
+    }
+    const double h = 1e-3;
+    Settings settings = step_of(h);
+    settings.residual = 1e-9;
+    Simulation<double> s(scene, settings);
+    const int n = 300;
+    for (int k = 0; k < n; ++k) {
+      ASSERT_TRUE(s.step().ok()) << "step " << k << ": " << s.last().message;
+      ASSERT_EQ(s.rows().size(), stack.points) << "step " << k;
+    }
+    double normal = 0;
+    Index row = 0;
+    for (const RowSet<double>& c : s.rows()) {
+      if (c.other == ground) normal += s.impulses()[row];
+      row += c.directions;
+    }
+    EXPECT_NEAR(normal / h / g / mass, 1, 3 * settings.residual / (h * g));
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const auto q = s.state().q.segment<7>(static_cast<Index>(7 * k));
+      EXPECT_LE((q.head<3>() - V3(0, 0, at[k])).norm(), 6 * n * h * settings.residual + 1e-12) << k;
+      EXPECT_LE(q.segment<3>(4).norm(), 6 * n * h * settings.residual / 0.1) << k;
+    }
   }
 }
 

@@ -45,6 +45,7 @@ Detection<T>::Detection(const Scene& scene)
     : search_(scene.motion.search), friction_(scene.motion.friction), ground_friction_(scene.ground_friction), R_inverse_(scene.motion.contact_damping) {
   for (const Body& b : scene.model.bodies) reach_.push_back(reach_of(b));
   speeds_.resize(scene.model.bodies.size());
+  search_.hulls = hull_surfaces(scene.model);
 }
 
 /// As far as each body comes in two steps: two of them towards each other in one.
