@@ -12,6 +12,7 @@
 #include "models/convex_contacts.h"
 #include "models/farthest.h"
 #include "models/hull.h"
+#include "models/near_pairs.h"
 
 namespace delassus {
 
@@ -194,28 +195,13 @@ std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const 
   return out;
 }
 
-/// Pairs of shapes whose bounding spheres come within their margin: sorted along x and swept as far as the largest margin. Whether a
-/// pair is near does not depend on what else there is.
-std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Placed>& shapes, const Poses<double>& poses,
-                                                            const ContactSearch& search) {
-  std::vector<V3> at(shapes.size());
-  std::vector<std::size_t> order(shapes.size());
-  for (std::size_t i = 0; i < shapes.size(); ++i) at[i] = reference_of(poses, shapes[i].body) + shapes[i].pose.translation, order[i] = i;
-  auto left = [&](std::size_t i) { return at[i][0] - shapes[i].radius; };
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
-  double largest = search.margin;
-  for (const Placed& p : shapes) largest = std::max(largest, margin_of(search, p.body));
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  for (std::size_t k = 0; k < order.size(); ++k)
-    for (std::size_t l = k + 1; l < order.size(); ++l) {
-      const std::size_t i = std::min(order[k], order[l]), j = std::max(order[k], order[l]);
-      const double right = at[order[k]][0] + shapes[order[k]].radius, margin = margin_of(search, shapes[i].body, shapes[j].body);
-      if (left(order[l]) > right + largest) break;
-      if (left(order[l]) > right + margin || (rests(search, shapes[i].body) && rests(search, shapes[j].body))) continue;
-      if (search.object[static_cast<std::size_t>(shapes[i].body)] == search.object[static_cast<std::size_t>(shapes[j].body)]) continue;
-      if ((at[i] - at[j]).norm() <= shapes[i].radius + shapes[j].radius + margin) out.emplace_back(i, j);
-    }
-  std::sort(out.begin(), out.end());
+/// Bounding spheres, in the world.
+std::vector<Ball> balls_of(const std::vector<Placed>& shapes, const Poses<double>& poses, const ContactSearch& search) {
+  std::vector<Ball> out;
+  for (const Placed& p : shapes) {
+    const Index object = search.object.empty() ? 0 : search.object[static_cast<std::size_t>(p.body)];
+    out.push_back({reference_of(poses, p.body) + p.pose.translation, p.radius, margin_of(search, p.body), object, rests(search, p.body)});
+  }
   return out;
 }
 
@@ -270,7 +256,7 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
       if (!rests(search, p.body)) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
   const std::shared_ptr<const HullSurfaces> hulls = search.hulls != nullptr ? search.hulls : hull_surfaces(model);
   Index without_surface = 0;
-  for (const auto& [i, j] : near_pairs(shapes, poses, search)) {
+  for (const auto& [i, j] : near_pairs(balls_of(shapes, poses, search))) {
     const Placed &a = shapes[i], &b = shapes[j];
     const auto lacks = [&](const Placed& p) { return is(p, Shape::Kind::hull) && surface_of(*hulls, *p.shape) == nullptr; };
     if (lacks(a) || lacks(b)) {

@@ -51,6 +51,7 @@ FILES = {
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
     **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp"], "BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts ZeroSize SceneLaws SceneFile Scenes"),
+    "near_pairs.cpp": "NearPairs ContactLaws",
     **dict.fromkeys(["convex_shape.cpp", "convex_axis.cpp", "closest_points.cpp", "rim_axis.cpp", "convex_face.cpp", "convex_contacts.cpp"], "ConvexContacts ContactLaws"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
                     "SceneLaws SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
