@@ -22,7 +22,7 @@ const std::vector<SolverRow>& solvers() {
       {.name = "direct", .summary = "equality rows by one solve of the ladder", .equations = "(G + R⁻¹) λ = target − g",
        .certificate = "natural residual", .source = "paper, equations 2–5", .cost = "O(n + m) with local loops, no iteration",
        .half_lines = false, .boxes = false, .relaxed = false, .exact = false, .hard_rows = true, .given_matrix = true, .make = make<Direct>},
-      {.name = "newton_convex", .summary = "Newton on the motion, lcaba's factor as its Hessian, exact line search",
+      {.name = "newton_convex", .summary = "Newton on the motion, lcaba's factor as its Hessian, line search",
        .equations = "(M + JᵀHJ) d = Jᵀλ − M w", .certificate = "duality gap, natural residual",
        .source = "Todorov 2014; Castro, Permenter, Han 2022", .cost = "O(n + m) an iteration with local loops",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = false, .given_matrix = false, .make = make<NewtonConvex>},

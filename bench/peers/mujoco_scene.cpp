@@ -83,12 +83,10 @@ struct Filter {
       if (next >= ground_bit) has_not("room for so many robots in its filter");
     }
   }
-  [[nodiscard]] std::string text(const Scene& scene, Index body, const Shape& s) const {
+  [[nodiscard]] std::string text(const Scene& scene, Index body) const {
     const auto& objects = scene.motion.search.object;
-    const int own = objects.empty() ? alone : bit.at(objects[z(body)]);
-    const bool pairs = s.kind != Shape::Kind::cylinder && s.kind != Shape::Kind::hull;
-    const int type = pairs ? own : 0, meets = ground_bit | (pairs ? (own == alone ? all : all & ~own) : 0);
-    return " contype=\"" + std::to_string(type) + "\" conaffinity=\"" + std::to_string(meets) + "\"";
+    const int own = objects.empty() ? alone : bit.at(objects[z(body)]), meets = ground_bit | (own == alone ? all : all & ~own);
+    return " contype=\"" + std::to_string(own) + "\" conaffinity=\"" + std::to_string(meets) + "\"";
   }
 };
 
@@ -114,7 +112,7 @@ reference::MujocoMore text_of(const Scene& scene, const std::vector<Connected>& 
       seen = std::max(seen, mu);
       const Eigen::Quaterniond turned(s.placement.rotation);
       text += std::string("<geom type=\"") + types[static_cast<std::size_t>(s.kind)] + "\" pos=\"" + numbers(s.placement.translation) + "\" quat=\"" +
-              numbers(Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z())) + "\"" + filter.text(scene, static_cast<Index>(i), s) + friction_text(mu);
+              numbers(Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z())) + "\"" + filter.text(scene, static_cast<Index>(i)) + friction_text(mu);
       if (s.kind == Shape::Kind::hull) {
         const std::string name = "mesh" + std::to_string(meshes++);
         out.assets += "<mesh name=\"" + name + "\" vertex=\"";

@@ -2,8 +2,8 @@
 //
 // Bodies   and joints, inertias, armature: number by number. Springs and dampers of joints are its own; so are motors without a limit of
 //          their effort, which are nothing else; motors with one are actuators with force = torque + k (target − q) − d q̇ cut there.
-// Shapes   sphere, capsule, cylinder, box, hulls as meshes; which pairs touch is ours: bodies of one object do not, cylinders and
-//          hulls only touch the ground. The ground's coefficient, or the scene's, is that of the contact.
+// Shapes   sphere, capsule, cylinder, box, hulls as meshes; which pairs touch is ours: bodies of one object do not.
+//          The ground's coefficient, or the scene's, is that of the contact.
 // Loops    point: `connect`. hinge: two of them on its axis, 0.2 m apart, six rows of which five are independent. prismatic between a free
 //          body and the world: MuJoCo has no row for it; the five other directions get an armature of 10¹⁰ kg, which costs it nothing.
 // Refused  by name: what it has not (restitution), or what no example has (torsional and rolling friction, sleep, other rows).

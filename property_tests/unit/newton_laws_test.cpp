@@ -155,7 +155,7 @@ TEST(NewtonLaws, OneStepFromTheActiveSet) {
   EXPECT_GT(judged, 3);
 }
 
-// The same method with a dense Hessian and a search by bisection needs as many iterations.
+// The same method with a dense Hessian, its search written out with dense curvature, needs as many iterations.
 TEST(NewtonLaws, AsManyIterationsAsWithADenseHessian) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Bench s(spec(4, 8, seed, seed % 2 == 0));
@@ -171,11 +171,14 @@ TEST(NewtonLaws, AsManyIterationsAsWithADenseHessian) {
       const MatrixX<double> H = exact_curvature(s, u);
       const VectorX<double> d = (s.M + s.J.transpose() * H * s.J).llt().solve(s.J.transpose() * l - s.M * w), Jd = s.J * d;
       const auto slope = [&](double alpha) { return d.dot(s.M * (w + alpha * d)) - Jd.dot(impulses(s, u + alpha * Jd)); };
-      double low = 0, high = 1;
-      while (slope(high) < 0) high *= 2;
-      for (int k = 0; k < 80; ++k) (slope((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
-      w += high * d;
-      if ((high * Jd).lpNorm<Eigen::Infinity>() <= 1e-6) break;
+      double low = 0, high = 0, alpha = 1;
+      while (std::fabs(slope(alpha)) > PrimalNewton<double>::flat_enough * std::fabs(slope(0))) {
+        (slope(alpha) < 0 ? low : high) = alpha;
+        const double next = alpha - slope(alpha) / d.dot(MatrixX<double>(s.M + s.J.transpose() * exact_curvature(s, u + alpha * Jd) * s.J) * d);
+        alpha = high > 0 && !(low < next && next < high) ? (low + high) / 2 : next;
+      }
+      w += alpha * d;
+      if ((alpha * Jd).lpNorm<Eigen::Infinity>() <= 1e-6) break;
     }
     EXPECT_NEAR(out.iterations, dense + 1, 1) << "seed " << seed;
     EXPECT_LT((newton.motion() - w).norm(), 1e-6 * (1 + w.norm()));

@@ -132,7 +132,7 @@ template <class T> T PrimalNewton<T>::length(const VectorX<T>& R_inverse) {
     moved_ = u_ + alpha * Jd_;
     impulses(R_inverse, moved_, trial_);
     const T value = dMw + alpha * dMd - Jd_.dot(trial_ - origin_);
-    if (abs(value) <= T(1e-10) * start) break;
+    if (abs(value) <= T(flat_enough) * start) break;
     (value < T(0) ? low : high) = alpha;
     curve(R_inverse, moved_, trial_);
     weights_.assign(H_);

@@ -6,8 +6,9 @@
 //   gradient  M w − Jᵀ(λ(u) − λ₀)
 //   Hessian   M + JᵀH J,  H_c = R^½ Π̂' R^½ ≥ 0, 3 × 3 for a contact, 0 where it is open
 //   step      d = (M + JᵀH J)⁻¹ (Jᵀ(λ − λ₀) − M w): the factor of lcaba with H as weights. Only H changes: update_weights.
-//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ (λ(u + α J d) − λ₀), which increases: Newton within a bracket, O(m) each;
-//             φ''(α), and with it H, only where α is not it
+//   length    the zero of φ'(α) = dᵀM (w + α d) − (J d)ᵀ (λ(u + α J d) − λ₀), which increases: Newton within a bracket, O(m) each,
+//             until |φ'(α)| ≤ flat_enough |φ'(0)|; φ''(α), and with it H, only where α is not it. What an exact zero would gain, the next
+//             step's H gains better: as many steps, and most of them with one λ(u)
 // Cost     O(n + m) an iteration with local loops. Nothing allocates after analyze.
 // Source   E. Todorov 2014 (MuJoCo); A. Castro, F. Permenter, X. Han 2022 (SAP). The factor: paper, Algorithm 4.
 #pragma once
@@ -23,6 +24,7 @@ namespace delassus::simulation {
 
 template <class T> class PrimalNewton {
  public:
+  static constexpr double flat_enough = 0.1;  ///< of the slope along a step, what is left at its end
   /// Why the rows cannot be taken, or "": the rows of a Coulomb group must be rows of one constraint.
   [[nodiscard]] static std::string refusal(const ContactProblem<T>& p);
   void analyze(const ContactProblem<T>& p);
