@@ -11,10 +11,9 @@ template <class T, Tree tree> void CabaOsimWith<T, tree>::do_analyze() {
   factor_.analyze(*this->structure(), plan_);
   rows_.analyze(*this->structure(), plan_, tree);
   weights_.analyze(*this->structure());
-  V_.setZero(m, m);
   F_.setZero(m, m);
+  RF_.setZero(m, m);
   inverse_.analyze(m);
-  unit_.assign(static_cast<std::size_t>(m), T(0));
 }
 
 template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
@@ -37,25 +36,35 @@ template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_update_damping(co
   return factored_;
 }
 
-// V = R − R F R
+// V = R − (R F) R, its lower triangle, a block of R after the other: of its columns the rows from its first on
 template <class T, Tree tree> void CabaOsimWith<T, tree>::invert() {
-  const Index m = this->size();
+  const Structure& s = *this->structure();
+  const Index m = s.rows;
   F_.setZero();
   rows_.form(factor_, F_);
-  for (Index c = 0; c < m; ++c)
-    for (Index r = c + 1; r < m; ++r) F_(c, r) = F_(r, c);
-  for (Index c = 0; c < m; ++c) weights_.multiply(F_.data() + c * m, V_.data() + c * m);  // R F
-  for (Index c = 0; c < m; ++c)
-    for (Index r = 0; r < m; ++r) F_(r, c) = V_(c, r);  // F R
-  for (Index c = 0; c < m; ++c) {
-    T *const v = V_.data() + c * m, *const of_R = F_.data() + c * m;
-    weights_.multiply(of_R, v);
-    unit_[c] = T(1);
-    weights_.multiply(unit_.data(), of_R);
-    unit_[c] = T(0);
-    for (Index r = 0; r < m; ++r) v[r] = of_R[r] - v[r];
-  }
-  inverse_.assign(V_);
+  Index e = 0;
+  const auto block = [&](Index first, Index count) {
+    const T* const R = weights_.dense(e++);
+    for (Index c = first; c < first + count; ++c)
+      for (Index r = c + 1; r < first + count; ++r) F_(c, r) = F_(r, c);
+    for (Index c = first; c < first + count; ++c) weights_.multiply(F_.data() + c * m, RF_.data() + c * m);
+    for (Index c = first; c < first + count; ++c) {
+      T* const v = F_.data() + c * m;
+      if (R == nullptr) {
+        for (Index r = first; r < m; ++r) v[r] = -(RF_(r, c) * weights_.diagonal(c));
+        v[c] += weights_.diagonal(c);
+        continue;
+      }
+      const T* const of_R = R + (c - first) * count;
+      for (Index r = first; r < m; ++r) v[r] = -(RF_(r, first) * of_R[0]);
+      for (Index k = 1; k < count; ++k)
+        for (Index r = first; r < m; ++r) v[r] -= RF_(r, first + k) * of_R[k];
+      for (Index r = 0; r < count; ++r) v[first + r] += of_R[r];
+    }
+  };
+  for (const auto& c : s.link_constraints) block(c.row, c.rows);
+  for (const auto& c : s.joint_constraints) block(c.row, c.rows);
+  inverse_.assign(F_);
 }
 
 template <class T, Tree tree> Report CabaOsimWith<T, tree>::do_solve(ConstRef<T> a, Ref<T> f, T* workspace) const {
@@ -84,7 +93,7 @@ Report CabaOsimWith<T, tree>::do_solve_kkt(const T* r1, const T* r2, T* nu, T* l
 template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_kkt_workspace() const { return padded(factor_.solve_workspace()) + padded(this->size()); }
 
 template <class T, Tree tree> Index CabaOsimWith<T, tree>::do_bytes() const {
-  return plan_.bytes() + factor_.bytes() + rows_.bytes() + weights_.bytes() + static_cast<Index>(sizeof(T)) * (2 * V_.size() + static_cast<Index>(unit_.size())) + inverse_.bytes();
+  return plan_.bytes() + factor_.bytes() + rows_.bytes() + weights_.bytes() + 2 * static_cast<Index>(sizeof(T)) * F_.size() + inverse_.bytes();
 }
 
 #define DELASSUS_INSTANTIATE(T) template class CabaOsimWith<T, Tree::whole>; template class CabaOsimWith<T, Tree::contracted>;

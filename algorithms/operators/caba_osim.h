@@ -38,9 +38,8 @@ template <class T, Tree tree> class CabaOsimWith : public Operator<T> {
   Factor<T> factor_;
   RowPropagation<T> rows_;
   BlockDiagonal<T> weights_;    // R
-  MatrixX<T> V_, F_;            // m × m: Λ_R, its lower triangle; J M_R⁻¹Jᵀ, and what is made of it
+  MatrixX<T> F_, RF_;           // m × m: J M_R⁻¹Jᵀ, then Λ_R, their lower triangles; R F
   SymmetricTiles<T> inverse_;   // Λ_R
-  std::vector<T> unit_;
   Report undamped_, factored_;  // of phase A, and of the whole factor
 };
 
