@@ -14,7 +14,7 @@ using Q = Quantities;
 using Names = std::vector<Q::Name>;
 
 constexpr const char* quantity_names[] = {"one", "bodies", "dofs", "active_bodies", "active_dofs", "rows", "link_rows", "joint_rows", "couplings", "depth", "row_depth",
-                                          "row_pairs", "row_bodies", "row_dofs", "row_links", "row_packets", "row_singles", "rows_squared", "rows_cubed"};
+                                          "row_pairs", "row_bodies", "row_dofs", "row_links", "row_packets", "row_singles", "rows_squared", "rows_cubed", "tiles", "tile_pairs"};
 static_assert(std::size(quantity_names) == Q::count);
 constexpr const char* phase_names[] = {"update", "damping", "product", "solve", "product_of_eight", "solve_of_eight"};
 static_assert(std::size(phase_names) == phase_count);
@@ -28,12 +28,14 @@ struct Form {
 const Names vector_sweep{Q::one, Q::active_bodies, Q::active_dofs, Q::rows, Q::link_rows, Q::joint_rows};
 const Names coupled_sweep{Q::one, Q::active_bodies, Q::active_dofs, Q::rows, Q::link_rows, Q::joint_rows, Q::couplings};
 const Names dense_product{Q::one, Q::rows, Q::row_packets, Q::row_singles};
-const Names dense_solve{Q::one, Q::rows, Q::rows_squared};
+const Names tiled{Q::one, Q::rows, Q::tiles};
+const Names tiled_factor{Q::one, Q::rows, Q::tiles, Q::tile_pairs};
 const Names dense_factor{Q::one, Q::rows, Q::rows_squared, Q::rows_cubed};
 const Names free_update{Q::one, Q::bodies, Q::dofs, Q::rows, Q::link_rows, Q::joint_rows};
 const Names coupled_update{Q::one, Q::bodies, Q::dofs, Q::rows, Q::link_rows, Q::joint_rows, Q::couplings};
 const Names columns_update{Q::one, Q::bodies, Q::dofs, Q::rows, Q::joint_rows, Q::row_bodies, Q::row_dofs, Q::row_links, Q::rows_squared, Q::rows_cubed};
-const Names branch_update{Q::one, Q::dofs, Q::depth, Q::rows, Q::joint_rows, Q::row_depth, Q::row_pairs, Q::rows_squared, Q::rows_cubed};
+const Names tiled_columns_update{Q::one, Q::bodies, Q::dofs, Q::rows, Q::joint_rows, Q::row_bodies, Q::row_dofs, Q::row_links, Q::rows_squared, Q::tiles, Q::tile_pairs};
+const Names branch_update{Q::one, Q::dofs, Q::depth, Q::rows, Q::joint_rows, Q::row_depth, Q::row_pairs, Q::tiles, Q::tile_pairs};
 const Names inverse_update{Q::one, Q::bodies, Q::dofs, Q::rows, Q::link_rows, Q::joint_rows, Q::couplings, Q::row_depth, Q::row_pairs, Q::rows_squared};
 const Names mixed_solve{Q::one, Q::active_bodies, Q::active_dofs, Q::rows, Q::link_rows, Q::joint_rows, Q::rows_squared};
 
@@ -41,8 +43,8 @@ const std::vector<Form>& forms() {
   static const std::vector<Form> all{
       {"aba_sweep", {free_update, {Q::one, Q::rows}, vector_sweep, {}, vector_sweep, {}}},
       {"lcaba", {coupled_update, coupled_update, {}, coupled_sweep, {}, coupled_sweep}},
-      {"explicit_columns", {columns_update, dense_factor, dense_product, dense_solve, dense_product, dense_solve}},
-      {"ltl_osim", {branch_update, dense_factor, dense_product, dense_solve, dense_product, dense_solve}},
+      {"explicit_columns", {tiled_columns_update, tiled_factor, tiled, tiled, tiled, tiled}},
+      {"ltl_osim", {branch_update, tiled_factor, tiled, tiled, tiled, tiled}},
       {"caba_osim", {inverse_update, inverse_update, {}, dense_product, {}, dense_product}},
       {"caba_osimr", {inverse_update, inverse_update, {}, dense_product, {}, dense_product}},
       {"ladder", {coupled_update, coupled_update, {}, coupled_sweep, {}, coupled_sweep}},

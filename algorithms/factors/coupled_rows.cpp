@@ -79,6 +79,12 @@ template <class Visit> void eliminate(const Cliques& c, const Visit& visit) {
   }
 }
 
+std::vector<Index> tiles(const Structure& structure, Index width) {
+  std::vector<Index> tile(static_cast<std::size_t>(structure.rows));
+  for (Index r = 0; r < structure.rows; ++r) tile[r] = r / width;
+  return tile;
+}
+
 }  // namespace
 
 Fill full(Index units) {
@@ -106,10 +112,15 @@ Fill coupled_rows(const Structure& structure, const std::vector<Index>& unit) {
   return f;
 }
 
-Fill coupled_rows(const Structure& structure, Index width) {
-  std::vector<Index> tile(static_cast<std::size_t>(structure.rows));
-  for (Index r = 0; r < structure.rows; ++r) tile[r] = r / width;
-  return coupled_rows(structure, tile);
+Fill coupled_rows(const Structure& structure, Index width) { return coupled_rows(structure, tiles(structure, width)); }
+
+FillSums tile_sums(const Structure& structure, Index width) {
+  const Cliques cliques = cliques_of(structure, tiles(structure, width));
+  std::vector<double> entries(static_cast<std::size_t>(cliques.units()), 1);
+  eliminate(cliques, [&](Index s, Index) { entries[s] += 1; });
+  FillSums sums;
+  for (const double e : entries) sums.entries += e, sums.squares += e * e;
+  return sums;
 }
 
 FillSums fill_sums(const Structure& structure) {

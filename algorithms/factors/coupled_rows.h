@@ -31,5 +31,7 @@ struct FillSums {
   double entries = 0, squares = 0;
 };
 [[nodiscard]] FillSums fill_sums(const Structure& structure);
+/// The same over the columns of L by units of `width` rows.
+[[nodiscard]] FillSums tile_sums(const Structure& structure, Index width);
 
 }  // namespace delassus

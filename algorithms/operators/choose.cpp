@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/factors/coupled_rows.h"
 #include "algorithms/factors/plan.h"
 #include "algorithms/kit/columns.h"
 #include "algorithms/operators/kernel_costs.h"
@@ -42,6 +43,8 @@ Quantities count(const Structure& s) {
   add(Quantities::rows, m), add(Quantities::rows_squared, m * m), add(Quantities::rows_cubed, m * m * m);
   add(Quantities::row_bodies, batches * active), add(Quantities::row_dofs, batches * columns), add(Quantities::row_links, batches * q.of[Quantities::link_rows]);
   add(Quantities::row_packets, m * std::floor(m / lane_count)), add(Quantities::row_singles, m * std::fmod(m, lane_count));
+  const FillSums tiles = tile_sums(s, lane_count);
+  add(Quantities::tiles, tiles.entries), add(Quantities::tile_pairs, (tiles.squares - tiles.entries) / 2);
   return q;
 }
 

@@ -1,6 +1,6 @@
 // Which row of the table answers cheapest: explicit or matrix-free, from the structure and from how often it is asked.
 //
-// What     an explicit row pays once for a matrix and then 2 m² per answer; a matrix-free one pays per answer for the way through
+// What     an explicit row pays once for a matrix and then for its entries per answer; a matrix-free one pays per answer for the way through
 //          the tree. Which is cheaper depends on n, m, where rows act, on the number of columns, and on how many answers one
 //          configuration has to give.
 // Formula  cost(row, use) = U + d D + p P_k + s S_k,  each of them Σ_j c_j q_j: quantities q counted in the structure
@@ -8,7 +8,7 @@
 //          of this row's kernel per unit of each (kernel_costs.cpp, measured: `delassus bench --calibrate` prints that file).
 //          k columns: eight at a time where the row's kernel has lanes (columns.h), the others one by one.
 // Left out what no structure shows: how many refinement steps or rungs a certified solve needs. Its cost is that of the usual number.
-// Cost     one symbolic elimination (plan.h); no timing is taken: the same structure and use give the same row on every machine.
+// Cost     two symbolic eliminations (plan.h, coupled_rows.h); no timing is taken: the same structure and use give the same row on every machine.
 // Held     `delassus bench --choose`: against the fastest of all rows on every scene, 1, 10 and 1000 times.
 #pragma once
 
@@ -51,6 +51,7 @@ struct Quantities {
     row_links,                    ///< ⌈m/8⌉ link_rows
     row_packets, row_singles,     ///< m ⌊m/8⌋, m (m mod 8): a column of the matrix in vectors, and what is left of it
     rows_squared, rows_cubed,     ///< m², m³
+    tiles, tile_pairs,            ///< 8×8 tiles of the factor of A, t_p + 1 in column p of them; Σ t_p (t_p + 1)/2   (coupled_rows.h)
     count
   };
   std::array<double, count> of{};

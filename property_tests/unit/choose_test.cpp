@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "algorithms/factors/coupled_rows.h"
+#include "algorithms/kit/columns.h"
 #include "algorithms/operators/auto.h"
 #include "algorithms/operators/operators.h"
 #include "generators/build.h"
@@ -49,6 +51,14 @@ TEST(Choose, quantities_are_sums_over_bodies) {
     EXPECT_EQ(of(q, Quantities::active_dofs), dofs) << family;
     EXPECT_EQ(of(q, Quantities::bodies), static_cast<double>(s.bodies())) << family;
     EXPECT_EQ(8 * of(q, Quantities::row_packets) + of(q, Quantities::row_singles), of(q, Quantities::rows_squared)) << family;
+    double tiles = 0, pairs = 0;
+    const Fill fill = coupled_rows(s, lane_count);
+    for (std::size_t p = 0; p + 1 < fill.first.size(); ++p) {
+      const double below = static_cast<double>(fill.first[p + 1] - fill.first[p] - 1);
+      tiles += below + 1, pairs += below * (below + 1) / 2;
+    }
+    EXPECT_EQ(of(q, Quantities::tiles), tiles) << family;
+    EXPECT_EQ(of(q, Quantities::tile_pairs), pairs) << family;
   }
   EXPECT_EQ(of(count(*made("star", 5).problem.structure), Quantities::couplings), 0) << "nothing couples bodies there";
   EXPECT_GT(of(count(*made("lattice", 9).problem.structure), Quantities::couplings), 0);
