@@ -23,11 +23,19 @@ class Mujoco final : public Simulator {
     if (started_.size() == 0) started_ = Vector::Zero(scene.model.dofs());
     for (const Index k : s_.held) started_[k] = 0;
     qpos_.resize(m_->nq), qvel_.resize(m_->nv);
-    reset();
+    s_.set(scene_.q, started_);
+    first_qpos_ = Eigen::Map<const Vector>(d_->qpos, m_->nq), first_qvel_ = Eigen::Map<const Vector>(d_->qvel, m_->nv);
   }
   [[nodiscard]] mjModel& model() { return *m_; }
 
-  void reset() override { s_.set(scene_.q, started_); }
+  /// What a step starts from; mj_resetData would clear all of its memory, which is timed.
+  void reset() override {
+    std::copy_n(first_qpos_.data(), m_->nq, d_->qpos);
+    std::copy_n(first_qvel_.data(), m_->nv, d_->qvel);
+    std::fill_n(d_->qacc_warmstart, m_->nv, 0.);
+    d_->time = 0;
+    for (mjWarningStat& w : d_->warning) w.number = 0;
+  }
   bool step() override {
     std::copy_n(d_->qpos, m_->nq, qpos_.data());
     std::copy_n(d_->qvel, m_->nv, qvel_.data());
@@ -168,7 +176,7 @@ class Mujoco final : public Simulator {
   MujocoScene s_;
   mjModel* m_;
   mjData* d_;
-  Vector started_, qpos_, qvel_;
+  Vector started_, first_qpos_, first_qvel_, qpos_, qvel_;
   mutable Poses<double> at_;
 };
 
