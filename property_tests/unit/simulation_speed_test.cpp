@@ -141,6 +141,7 @@ TEST(SimulationSpeed, AnHonestOneIsJudgedAndTimedBesideOurs) {
     EXPECT_LT(e->M_error, 1e-12);
     EXPECT_LT(e->worst.momentum, 1e-14);
     EXPECT_LT(e->worst.natural, e == &ours ? 1.1e-10 : 1.1e-9);
+    EXPECT_GE(e->worst.natural, e->median.natural);
   }
   EXPECT_EQ(theirs.iterations, 7);
   EXPECT_NE(s.as_accurate_as("pretender"), nullptr);
