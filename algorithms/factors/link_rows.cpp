@@ -42,6 +42,7 @@ template <class E> struct Appended {
   [[nodiscard]] int size() const { return count; }
   void end() { list = list.first(static_cast<std::size_t>(count)); }
 };
+template <class E> Appended(std::span<E>&) -> Appended<E>;
 
 }  // namespace
 
@@ -53,7 +54,13 @@ template <class T> void LinkRows<T>::analyze(const Structure& s, const Plan& pla
   lists_.divide(Lists::Part{groups_, all.groups + 1}, Lists::Part{bodies_, all.bodies}, Lists::Part{pairs_, coupled ? all.pairs : 0},
                 Lists::Part{constraints_, static_cast<std::size_t>(sorted.size())}, Lists::Part{segments_, all.segments},
                 Lists::Part{spans_, all.spans}, Lists::Part{sources_, all.links}, Lists::Part{seen, static_cast<std::size_t>(plan.active())});
-  Appended groups{groups_}, spans{spans_}, sources{sources_}, segments{segments_}, constraints{constraints_}, bodies{bodies_}, pairs{pairs_};
+  Appended groups{groups_};
+  Appended spans{spans_};
+  Appended sources{sources_};
+  Appended segments{segments_};
+  Appended constraints{constraints_};
+  Appended bodies{bodies_};
+  Appended pairs{pairs_};
   int first = 0, largest = 0;
   for (int begin = 0, end = 0; begin < sorted.size(); begin = end) {
     const auto links = sorted.links(sorted[begin]);

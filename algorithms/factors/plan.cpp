@@ -135,7 +135,7 @@ Cliques minimum_degree(Tree& tree) {
   const int n = tree.n;
   Neighbours neighbours(tree);
   using Key = std::uint64_t;  // active, degree, rank: below 2 N²
-  const auto of = [n](const auto x) { return static_cast<Key>(x); };
+  const auto of = [](const auto x) { return static_cast<Key>(x); };
   const auto has = [&](int i, int j) {
     const auto set = neighbours[i];
     return std::binary_search(set.begin(), set.end(), j);

@@ -17,10 +17,10 @@
 namespace delassus {
 
 using Lanes4 = double __attribute__((vector_size(32)));
-using UnalignedLanes4 = double __attribute__((vector_size(32), aligned(8)));
+typedef double UnalignedLanes4 __attribute__((vector_size(32), aligned(8)));  // clang forgets the alignment in `using`
 using Lanes8f = float __attribute__((vector_size(32)));
 using Lanes4f = float __attribute__((vector_size(16)));
-using UnalignedLanes4f = float __attribute__((vector_size(16), aligned(4)));
+typedef float UnalignedLanes4f __attribute__((vector_size(16), aligned(4)));
 
 /// Whether sums over the lanes of several vectors are taken together (without AVX2 g++ 12 does it through memory).
 #ifdef __AVX2__
@@ -62,7 +62,7 @@ using Lanes8 = double __attribute__((vector_size(64)));
   return Lanes8{x[0], x[1], x[2], x[3], x[4], x[5], 0, 0};
 #endif
 }
-using UnalignedLanes8 = double __attribute__((vector_size(64), aligned(8)));
+typedef double UnalignedLanes8 __attribute__((vector_size(64), aligned(8)));
 /// Eight numbers at any address.
 [[nodiscard, gnu::always_inline]] inline Lanes8 load_lanes(const double* x) { return *reinterpret_cast<const UnalignedLanes8*>(x); }
 [[gnu::always_inline]] inline void store_lanes(double* x, const Lanes8& y) { *reinterpret_cast<UnalignedLanes8*>(x) = y; }

@@ -24,7 +24,7 @@ using Doubles = double __attribute__((vector_size(16)));
 using Floats = Lanes4f;
 inline constexpr int at_once = 4, in_factor = 2;
 #endif
-using UnalignedFloats = float __attribute__((vector_size(32), aligned(4)));
+typedef float UnalignedFloats __attribute__((vector_size(32), aligned(4)));  // as in lanes.h
 template <class T> using Part = std::conditional_t<std::is_same_v<T, double>, Doubles, std::conditional_t<std::is_same_v<T, float>, Floats, T>>;
 template <class T> inline constexpr int parts = (has_lanes<T> ? static_cast<int>(lane_count) : 1) * static_cast<int>(sizeof(T)) / static_cast<int>(sizeof(Part<T>));
 template <class T> inline constexpr int group = has_lanes<T> ? at_once : 1;

@@ -86,7 +86,7 @@ template <class T> [[nodiscard]] inline ThreeByThree<T> times_transposed(const T
 template <class T> inline void store(T* to, const Three<T>& upper, const Three<T>& lower) {
   if constexpr (std::is_same_v<T, double>) {
     *reinterpret_cast<UnalignedLanes4*>(to) = upper.v;
-    using Two = double __attribute__((vector_size(16), aligned(8)));
+    typedef double Two __attribute__((vector_size(16), aligned(8)));
     *reinterpret_cast<Two*>(to + 3) = __builtin_shufflevector(lower.v, lower.v, 0, 1);
     to[5] = lower.v[2];
   } else {

@@ -16,24 +16,24 @@ template <class T> void ExplicitColumns<T>::analyze_form() {
 template <class T> void ExplicitColumns<T>::form(const Problem<T>& problem, MatrixX<T>& A0) {
   const Index m = this->size();
   this->factor_M_.move_rows(problem);
-  const auto columns = [&](auto* const x, Index first, Index count, const auto& entry) {  // x: zeros, values for A₀ x, scratch
+  const auto columns = [&](auto* const x, Index first, int count) {  // x: zeros, values for A₀ x, scratch
     auto* const y = x + padded(m);
-    for (Index c = 0; c < count; ++c) entry(x[first + c], c) = T(1);
+    for (int c = 0; c < count; ++c) set_lane(x[first + c], c, T(1));
     this->factor_M_.project(x, y, y + padded(m));
-    for (Index c = 0; c < count; ++c)
-      for (Index r = first + c; r < m; ++r) A0(r, first + c) = entry(y[r], c);
-    for (Index c = 0; c < count; ++c) entry(x[first + c], c) = T(0);
+    for (int c = 0; c < count; ++c)
+      for (Index r = first + c; r < m; ++r) A0(r, first + c) = lane(y[r], c);
+    for (int c = 0; c < count; ++c) set_lane(x[first + c], c, T(0));
   };
   Index c = 0;
   if constexpr (has_lanes<T>) {
     auto* const x = reinterpret_cast<Lanes<T>*>(work_->data());
     std::fill(x, x + m, Lanes<T>{});
     for (; m - c >= least_lanes; c += std::min(lane_count, m - c))
-      columns(x, c, std::min(lane_count, m - c), [](auto& v, Index lane) -> decltype(auto) { return v[lane]; });
+      columns(x, c, static_cast<int>(std::min(lane_count, m - c)));
   }
   T* const x = work_->data();
   std::fill(x, x + m, T(0));
-  for (; c < m; ++c) columns(x, c, 1, [](auto& v, Index) -> auto& { return v; });
+  for (; c < m; ++c) columns(x, c, 1);
 }
 
 template <class T> Index ExplicitColumns<T>::form_bytes() const {

@@ -44,13 +44,13 @@ void LcabaRefined<T>::correct(const X* r1, const X* r2, X* d_nu, X* d_lambda, X*
 template <class T>
 Report LcabaRefined<T>::solve_pair(const typename Refinement<T>::Asked& asked, T* f, T* nu, Accuracy wanted, T* work) const {
   if (!factored_.ok()) return factored_;
-  return refinement_.solve(asked, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, work, nu);
+  return refinement_.solve(asked, f, wanted, {max_steps}, [this](auto... arguments) { this->correct(arguments...); }, work, nu);
 }
 
 template <class T>
 bool LcabaRefined<T>::solve_together(ConstRef<T> a, Ref<T> f, Accuracy wanted, typename ColumnByColumn<T>::Reports& reports, T* workspace) const {
   if (!factored_.ok()) return false;
-  return this->in_lanes(refinement_, a, f, wanted, {max_steps}, [this](auto... arguments) { correct(arguments...); }, reports, workspace);
+  return this->in_lanes(refinement_, a, f, wanted, {max_steps}, [this](auto... arguments) { this->correct(arguments...); }, reports, workspace);
 }
 
 template <class T> Index LcabaRefined<T>::do_workspace(Index columns) const {
