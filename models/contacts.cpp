@@ -244,6 +244,26 @@ std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model) {
   return out;
 }
 
+std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object) {
+  std::vector<std::pair<Index, Index>> out;
+  const auto body = [&](Index i) -> const Body& { return model.bodies[static_cast<std::size_t>(i)]; };
+  const auto with_shapes = [&](Index i) {
+    while (i != ground && body(i).shapes.empty()) i = body(i).parent;
+    return i;
+  };
+  const auto take = [&](Index i, Index j) {
+    i = with_shapes(i), j = with_shapes(j);
+    if (i == ground || j == ground || i == j || object[static_cast<std::size_t>(i)] != object[static_cast<std::size_t>(j)]) return;
+    out.push_back(std::minmax(i, j));
+  };
+  for (Index i = 0; i < static_cast<Index>(model.bodies.size()); ++i) take(i, body(i).parent);
+  for (const Constraint& c : model.constraints)
+    if (c.kind != Constraint::Kind::contact) take(c.a.body, c.b.body);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses, const ContactSearch& search,
                                         std::vector<std::string>& notes) {
   std::vector<Placed> shapes;
@@ -258,6 +278,7 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
   Index without_surface = 0;
   for (const auto& [i, j] : near_pairs(balls_of(shapes, poses, search))) {
     const Placed &a = shapes[i], &b = shapes[j];
+    if (std::binary_search(search.apart.begin(), search.apart.end(), std::pair<Index, Index>(std::minmax(a.body, b.body)))) continue;
     const auto lacks = [&](const Placed& p) { return is(p, Shape::Kind::hull) && surface_of(*hulls, *p.shape) == nullptr; };
     if (lacks(a) || lacks(b)) {
       ++without_surface;

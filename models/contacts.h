@@ -6,7 +6,7 @@
 //   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
 //            edges), capsule–box at ends, edges and the deepest place, capsule–capsule at the closest points; cylinders and
 //            hulls with these and each other: convex_contacts.h
-// Hulls of which qhull finds no surface meet the ground alone: notes count their pairs. Links of one robot are not tested against each other.
+// Hulls of which qhull finds no surface meet the ground alone: notes count their pairs.
 #pragma once
 
 #include <memory>
@@ -33,15 +33,20 @@ struct ContactSearch {
   bool ground = false;
   double ground_height = 0;     ///< [m]
   std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
+  std::vector<std::pair<Index, Index>> apart;  ///< bodies that do not collide either, the smaller first, ascending
   std::vector<double> ahead;    ///< per body [m]: as much is added to the margin, of a pair the larger; empty: nothing
   std::shared_ptr<const HullSurfaces> hulls;  ///< those of the model, found once; null: found at each search
   const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: what rests is not looked for but against what does not; null: all
 };
 
 /// Points in the order (first body, second body, shapes, position on the face). `notes` gets a sentence for each
-/// kind of pair that was skipped. Cost O(N log N + pairs) for shapes spread out along x.
+/// kind of pair that was skipped. Cost O(N log N + pairs): near_pairs.h.
 [[nodiscard]] std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses,
                                                       const ContactSearch& search, std::vector<std::string>& notes);
+
+/// Pairs of bodies of one object that share a joint or a constraint, directly or through bodies without shapes: what `apart` is made of
+/// where every body is an object of its own.
+[[nodiscard]] std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object);
 
 /// Two axes that complete z to a right-handed orthonormal frame [x y z]; z = (0, 0, 1) gives the identity.
 [[nodiscard]] Matrix3<double> frame_about(const Vector3<double>& z);

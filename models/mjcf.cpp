@@ -237,7 +237,7 @@ void MjcfReader::add_notes() {
   count(cones, "limit(s) of ball joints", "a cone has no single coordinate");
   count(m_.nu, "actuator(s)", "they enter neither M nor J");
   count(m_.ntendon, "tendon(s)", "equalities of fixed tendons are read, their springs, damping and limits are not");
-  count(m_.nexclude + m_.npair, "contact pair(s) and exclude(s)", "links of one robot are not tested against each other");
+  count(m_.nexclude + m_.npair, "contact pair(s) and exclude(s)", "links of one robot are tested against each other only with self: true, and then by its rule");
   if (mocap > 0) findings_.note(options_.robot + ": " + std::to_string(mocap) + " mocap body(s) stand where the file puts them");
   for (const std::string& what : file_.left_out)
     findings_.warn("missing asset", options_.file, what, "its file is missing, it is left out", "put the file there; contacts need collision meshes");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <Eigen/Eigenvalues>
@@ -28,6 +29,22 @@ void SceneLoader::read_contact(const Yaml& y, double friction) {
   add(y, std::move(c));
 }
 
+/// Every body an object of its own, but for neighbours and for those that touch already: they stand so by their model.
+void SceneLoader::collide_within(ContactSearch& search) {
+  search.apart = neighbours(scene_.model, object_);
+  for (std::size_t i = 0; i < object_.size(); ++i) search.object[i] = static_cast<Index>(i);
+  std::vector<std::string> none;
+  const std::size_t joined = search.apart.size();
+  ContactSearch robots = search;
+  robots.ground = false;
+  for (const ContactPoint& p : find_contacts(scene_.model, poses_, robots, none))
+    if (object_[static_cast<std::size_t>(p.body)] == object_[static_cast<std::size_t>(p.other)]) search.apart.push_back(std::minmax(p.body, p.other));
+  std::sort(search.apart.begin(), search.apart.end());
+  search.apart.erase(std::unique(search.apart.begin(), search.apart.end()), search.apart.end());
+  if (const std::size_t touching = search.apart.size() - joined; touching > 0)
+    scene_.notes.push_back(std::to_string(touching) + " pairs of links of one robot touch at the given pose and are not tested against each other");
+}
+
 void SceneLoader::detect(const Yaml* y) {
   ContactSearch search;
   search.ground = scene_.has_ground;
@@ -35,7 +52,7 @@ void SceneLoader::detect(const Yaml* y) {
   search.object = object_;
   scene_.motion.detects = true;
   if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
-  scene_.motion.search = search;
+  const bool within = y != nullptr && y->has("self") && y->at("self").boolean();
   if (y != nullptr && y->has("friction")) scene_.motion.friction = y->at("friction").non_negative("");
   if (y != nullptr && y->has("restitution")) {
     scene_.motion.restitution = y->at("restitution").non_negative("");
@@ -47,10 +64,12 @@ void SceneLoader::detect(const Yaml* y) {
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
     y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
   Findings found(strict_);
-  if (scene_.has_ground || objects_ > 1)
+  if (scene_.has_ground || objects_ > 1 || within)
     for (const Robot& r : robots_) add_hulls(scene_.model, r, vertices, search.margin, found);
   scene_.notes.insert(scene_.notes.end(), found.notes.begin(), found.notes.end());
   scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());
+  if (within) collide_within(search);
+  scene_.motion.search = search;
   for (const ContactPoint& p : find_contacts(scene_.model, poses_, search, scene_.notes)) {
     const auto i = static_cast<std::size_t>(p.body);
     Constraint c;
@@ -68,11 +87,11 @@ void SceneLoader::detect(const Yaml* y) {
 }
 
 void SceneLoader::read_contacts(const Yaml& y) {
-  const std::string accepted = "detect, {detect: true, margin, hull_vertices, friction, torsional_friction, rolling_friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
+  const std::string accepted = "detect, {detect: true, self, margin, hull_vertices, friction, torsional_friction, rolling_friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
   if (y.is_list()) {
     for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
   } else if (y.is_map()) {
-    y.keys({"detect", "margin", "hull_vertices", "friction", "torsional_friction", "rolling_friction", "restitution", "damping"});
+    y.keys({"detect", "self", "margin", "hull_vertices", "friction", "torsional_friction", "rolling_friction", "restitution", "damping"});
     if (y.at("detect").boolean()) detect(&y);
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);

@@ -78,6 +78,7 @@ class SceneLoader {
   void read_contacts(const Yaml& y);
   void read_contact(const Yaml& y, double friction);
   void detect(const Yaml* y);
+  void collide_within(ContactSearch& search);
   void read_damping(const Yaml& root);
   void damp(const Yaml& y, Index row, Index rows);
 

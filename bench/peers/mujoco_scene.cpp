@@ -74,6 +74,7 @@ struct Filter {
   std::map<Index, int> bit;  // by object
 
   explicit Filter(const Scene& scene) {
+    if (!scene.motion.search.apart.empty()) has_not("the pairs of links that self: true leaves out");
     std::map<Index, int> bodies;
     for (const Index object : scene.motion.search.object) ++bodies[object];
     int next = 2;
