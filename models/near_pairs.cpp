@@ -40,6 +40,7 @@ bool near(const Ball& a, const Ball& b) {
 }  // namespace
 
 std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Ball>& balls, std::int64_t* tested) {
+  if (std::all_of(balls.begin(), balls.end(), [&](const Ball& b) { return b.object == balls[0].object; })) return {};
   std::map<int, Level> levels;
   std::vector<std::size_t> unbounded;
   const auto bounded = [&](std::size_t i) { return balls[i].centre.allFinite() && std::isfinite(2.0000001 * (balls[i].radius + balls[i].margin)); };

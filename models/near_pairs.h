@@ -4,7 +4,7 @@
 //        rest; ascending. A pair does not depend on what else there is.
 // How    cells of side 2^k, for each k with balls of 2^{k−1} < 2 (r + margin) ≤ 2^k in them: two balls of levels k ≤ l that are near lie in cells of side
 //        2^l next to each other. Balls that are not finite are held against all.
-// Cost   O(N · levels · log N + pairs of neighbouring cells), wherever the balls are: in a row, a wall, a tower, a heap.
+// Cost   O(N · levels · log N + pairs of neighbouring cells), wherever the balls are: in a row, a wall, a tower, a heap; of one object alone, O(N).
 #pragma once
 
 #include <vector>

@@ -60,6 +60,16 @@ TEST(NearPairs, touching_balls_are_near) {
   }
 }
 
+TEST(NearPairs, nothing_is_looked_at_where_all_is_one_object) {
+  std::vector<Ball> balls(50, Ball{V3(0, 0, 0), 1, 0, 4, false});
+  std::int64_t tested = 0;
+  EXPECT_TRUE(near_pairs(balls, &tested).empty());
+  EXPECT_EQ(tested, 0);
+  balls[49].object = 5;
+  EXPECT_EQ(near_pairs(balls, &tested).size(), 49u);
+  EXPECT_TRUE(near_pairs({}).empty());
+}
+
 // Counted, not timed: pairs looked at per ball do not grow from 10³ to 10⁴ balls, and are few.
 TEST(NearPairs, cost_is_near_linear_however_they_are_spread) {
   const auto root = [](Index n, int k) { return static_cast<Index>(std::ceil(std::pow(static_cast<double>(n), 1.0 / k) - 1e-9)); };
