@@ -27,14 +27,22 @@ template <class T>
 IslandsPath<T>::IslandsPath(std::string_view name, std::shared_ptr<const Structure> structure, Damping<double> damping, Make make, const MakeEquations& make_equations)
     : name_(name), structure_(std::move(structure)), damping_(std::move(damping)), make_(std::move(make)), islands_(*structure_) {
   loops_of_.assign(z(islands_.trees()), -1);
+  of_tree_.assign(z(islands_.trees()), nullptr);
   for (const auto& [first, trees] : sets_of(islands_.loops())) {
-    Part<T> part(*structure_, islands_, trees);
+    Part<T> part = part_of(trees);
     if (part.rows.empty()) continue;
     for (const Index t : trees) loops_of_[z(t)] = static_cast<Index>(loops_.size());
     auto path = make_equations(part.structure, part.damping(damping_));
     loops_.push_back({std::move(part), std::move(path)});
   }
   for (const Loops& l : loops_) (void)make_(l.part.structure, l.part.damping(damping_), l.path, l.part.rows);  // refusals come before the first step
+}
+
+/// Of all trees it is the whole: the same structure.
+template <class T> Part<T> IslandsPath<T>::part_of(const std::vector<Index>& trees) const {
+  Part<T> part(*structure_, islands_, trees);
+  if (trees.size() == of_tree_.size()) part.structure = structure_, part.problem = Problem<T>(structure_);
+  return part;
 }
 
 template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(const std::vector<Index>& trees, const Moment<T>& now) {
@@ -45,7 +53,7 @@ template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(cons
       if (loops_of_[z(t)] >= 0) loops.push_back(&loops_[z(loops_of_[z(t)])]);
     std::sort(loops.begin(), loops.end());
     loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
-    Part<T> part(*structure_, islands_, trees);
+    Part<T> part = part_of(trees);
     const bool alone = loops.size() == 1 && loops[0]->part.bodies == part.bodies;  // its equations are those of the loops, on one structure
     m = std::make_unique<Mover>(alone ? loops[0]->part : std::move(part), now);
     if (alone) m->equations = loops[0]->path;
@@ -53,28 +61,37 @@ template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(cons
     m->path = make_(m->part.structure, m->part.damping(damping_), m->equations, m->part.rows);
   }
   m->used = true;
-  m->rows.clear();
-  m->at.clear();
-  m->state.impulses.clear();
   return *m;
 }
 
-/// Every island its rows, and where they stand in the whole.
-template <class T> void IslandsPath<T>::deal(Moment<T>& now) {
-  const auto rests = [&](Index body) { return now.resting != nullptr && (*now.resting)[z(body)] != 0; };
-  std::erase_if(*now.rows, [&](const RowSet<T>& s) { return rests(s.body); });
-  islands_.join(*now.rows);
-  now.island = &islands_.islands();
-  kept_.clear();
+/// Who moves apart from whom: looked for again where islands or what rests are not those of the last step.
+template <class T> void IslandsPath<T>::group(const Moment<T>& now) {
+  resting_.assign(z(islands_.trees()), 0);
+  if (now.resting != nullptr)
+    for (Index t = 0; t < islands_.trees(); ++t) resting_[z(t)] = (*now.resting)[z(islands_.root_of(t))];
+  if (resting_ == grouped_resting_ && islands_.islands() == grouped_) return;
+  grouped_ = islands_.islands(), grouped_resting_ = resting_;
   moving_.clear();
   of_tree_.assign(z(islands_.trees()), nullptr);
   for (auto& [trees, m] : movers_) m->used = false;
   for (const auto& [first, trees] : sets_of(islands_.islands())) {
-    if (rests(islands_.root_of(first))) continue;
+    if (resting_[z(first)] != 0) continue;
     moving_.push_back(&mover_of(trees, now));
     for (const Index t : trees) of_tree_[z(t)] = moving_.back();
   }
   std::erase_if(movers_, [](const auto& entry) { return !entry.second->used; });
+  whole_ = moving_.size() == 1 && moving_[0]->part.structure == structure_;
+}
+
+/// Every island its rows, and where they stand in the whole.
+template <class T> void IslandsPath<T>::deal(Moment<T>& now) {
+  if (now.resting != nullptr) std::erase_if(*now.rows, [&](const RowSet<T>& s) { return (*now.resting)[z(s.body)] != 0; });
+  islands_.join(*now.rows);
+  now.island = &islands_.islands();
+  group(now);
+  if (whole_) return;
+  for (Mover* m : moving_) m->rows.clear(), m->at.clear(), m->state.impulses.clear();
+  kept_.clear();
   Index row = structure_->rows;
   for (const RowSet<T>& s : *now.rows) {
     Mover& m = *of_tree_[z(islands_.tree_of(s.body))];
@@ -95,6 +112,14 @@ template <class T> Index IslandsPath<T>::tree_of(const Identity& of) const {
   return std::max<Index>(0, islands_.tree_of_row()[z(of[1])]);
 }
 
+/// The numbers of rows that always hold, to who closes their drift.
+template <class T> void IslandsPath<T>::hand_over(Mover& m, const Moment<T>& now) {
+  for (Loops* l : m.loops) {
+    l->part.take(*now.problem);
+    l->path->take(l->part.problem);
+  }
+}
+
 template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
   m.part.take(*now.problem);
   m.part.gather(*now.force, m.force);
@@ -109,15 +134,18 @@ template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, Vec
     for (std::size_t e = 0; e < m.rows.size(); ++e)
       for (Index k = 0; k < m.rows[e].directions; ++k) impulses[m.at[e] + k] = m.impulses[own++];
   }
-  for (Loops* l : m.loops) {
-    l->part.take(*now.problem);
-    l->path->take(l->part.problem);
-  }
+  hand_over(m, now);
   return out;
 }
 
 template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
   deal(now);
+  if (whole_) {
+    moved_ = 1;
+    const StepReport out = moving_[0]->path->velocities(now, change, impulses);
+    if (out.ok()) hand_over(*moving_[0], now);
+    return out;
+  }
   Index rows = structure_->rows;
   for (const RowSet<T>& s : *now.rows) rows += s.directions;
   change = VectorX<T>::Constant(structure_->dofs(), T(0));
@@ -137,7 +165,8 @@ template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX
   return out;
 }
 
-template <class T> void IslandsPath<T>::remember(const Moment<T>&, State<T>& next) {
+template <class T> void IslandsPath<T>::remember(const Moment<T>& now, State<T>& next) {
+  if (whole_) return moving_[0]->path->remember(now, next);
   next.impulses = kept_;
   State<T> own;
   for (const Mover* m : moving_) {

@@ -6,7 +6,7 @@
 // Bits     of an island are those of a scene that holds nothing else.
 // What is rejoined are changes of velocities and impulses, in the order of the whole. The factor of rows that always hold is there for
 // who closes their drift, whatever path was taken.
-// Cost     that of the paths, and a copy of the numbers. Allocates where islands change.
+// Cost     that of the paths, and a copy of the numbers where there are several. Allocates where islands change.
 #pragma once
 
 #include <functional>
@@ -54,8 +54,11 @@ template <class T> class IslandsPath final : public Path<T> {
     Moment<T> now;
     bool used = false;
   };
+  void group(const Moment<T>& now);
   void deal(Moment<T>& now);
   [[nodiscard]] Index tree_of(const Identity& of) const;
+  [[nodiscard]] Part<T> part_of(const std::vector<Index>& trees) const;
+  static void hand_over(Mover& m, const Moment<T>& now);
   Mover& mover_of(const std::vector<Index>& trees, const Moment<T>& now);
   StepReport move(Mover& m, Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses);
 
@@ -70,6 +73,9 @@ template <class T> class IslandsPath final : public Path<T> {
   std::size_t moved_ = 0;        // how many of those moving were asked in the last step
   std::vector<Mover*> moving_;   // in the order of their first trees
   std::vector<Mover*> of_tree_;  // null: at rest
+  bool whole_ = false;           // one island is all there is: no number is copied
+  std::vector<Index> grouped_;   // islands of these
+  std::vector<std::uint8_t> resting_, grouped_resting_;  // per tree: now, and of these
   std::vector<typename State<T>::Impulse> kept_;  // of what is at rest
 };
 

@@ -73,12 +73,15 @@ TEST_P(AbsentInstructions, none_is_executed_and_a_step_has_those_of_the_smaller_
                      without_as_bare = as_bare.without == std::vector{effect} ? without : of_a_step(scene, as_bare);
   ASSERT_GT(without.all, 0);
   EXPECT_EQ(without.inside, 0);
-  EXPECT_TRUE(own.empty() || with.inside > 0);  // rows of equations have no code of their own
+  if (own.empty()) {
+    EXPECT_GT(with.all, without.all);  // rows of equations have no code of their own
+  } else {
+    EXPECT_GT(with.inside, 0);  // of all there may be fewer: with it a solver may end sooner
+  }
   EXPECT_EQ(without.all, of_smaller.all);
   if (effect != "velocity products") {
     EXPECT_EQ(without_as_bare.all, of_bare.all);
   }
-  EXPECT_GT(with.all, without.all);
 }
 
 std::vector<std::string> names() {
@@ -122,6 +125,7 @@ TEST(AllowedButUnused, sleeping_where_nothing_sleeps_and_restitution_where_nothi
   ASSERT_GT(absent, 0);
   for (const Scene& allowed : {drowsy, bouncy}) {
     const auto n = static_cast<double>(of_a_step(allowed, step_of(1e-3)).all);
+    std::printf("%.0f instructions a step, %.0f without: %.2f %%\n", n, absent, 100 * (n / absent - 1));
     EXPECT_GT(n, absent);
     EXPECT_LE(n, 1.02 * absent);
   }
