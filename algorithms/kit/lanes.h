@@ -17,7 +17,7 @@
 namespace delassus {
 
 using Lanes4 = double __attribute__((vector_size(32)));
-typedef double UnalignedLanes4 __attribute__((vector_size(32), aligned(8)));  // clang forgets the alignment in `using`
+typedef double UnalignedLanes4 __attribute__((vector_size(32), aligned(8)));  // clang forgets the alignment in `using`, g++ in `auto`
 using Lanes8f = float __attribute__((vector_size(32)));
 using Lanes4f = float __attribute__((vector_size(16)));
 typedef float UnalignedLanes4f __attribute__((vector_size(16), aligned(4)));
@@ -106,11 +106,11 @@ struct alignas(64) Lanes8 {
 }
 /// Eight numbers at any address.
 [[nodiscard, gnu::always_inline]] inline Lanes8 load_lanes(const double* x) {
-  const auto* const halves = reinterpret_cast<const UnalignedLanes4*>(x);
+  const UnalignedLanes4* const halves = reinterpret_cast<const UnalignedLanes4*>(x);
   return {Lanes4(halves[0]), Lanes4(halves[1])};  // by value: a reference would claim an alignment that x has not
 }
 [[gnu::always_inline]] inline void store_lanes(double* x, const Lanes8& y) {
-  auto* const halves = reinterpret_cast<UnalignedLanes4*>(x);
+  UnalignedLanes4* const halves = reinterpret_cast<UnalignedLanes4*>(x);
   halves[0] = y.lo;
   halves[1] = y.hi;
 }

@@ -98,7 +98,7 @@ template <class T, class P> [[gnu::always_inline]] inline void add_sums(T* to, c
   } else if constexpr (std::is_same_v<P, Lanes4>) {
     Lanes4 rows[4] = {sum[0], sum[1], sum[2], sum[3]};
     transpose_four(rows);
-    auto& four = *reinterpret_cast<UnalignedLanes4*>(to);
+    UnalignedLanes4& four = *reinterpret_cast<UnalignedLanes4*>(to);
     four += (rows[0] + rows[1]) + (rows[2] + rows[3]);
   } else {
     unrolled<group<T>>([&](auto k) { to[k] += sum_of<T>(sum[k]); });
