@@ -1,7 +1,6 @@
 #include "bench/peer_table.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "algorithms/mechanism/mechanism.h"
 #include "bench/accuracy_truth.h"
@@ -248,25 +247,8 @@ PeerTable measure_peers(const std::vector<std::string>& scenes, const std::vecto
                         const std::function<bool()>& stop) {
   check_found(rows);
   PeerTable t;
-  t.machine = this_machine();
-  t.kernels = std::string(kernels());
-  t.budget = budget;
-  const auto load = [] {
-    double now[1];
-    return getloadavg(now, 1) == 1 ? now[0] : NAN;
-  };
-  t.load = load();
-  const std::vector<std::string> names = scenes.empty() ? peer_scenes() : scenes;
-  const auto start = std::chrono::steady_clock::now();
-  for (const std::string& name : names) {
-    if (stop && stop()) {
-      t.interrupted = true;
-      break;
-    }
-    t.scenes.push_back(measure_peers(open_scene(name), rows, budget));
-    progress(format("%2zu/%zu  %s  %.0f s", t.scenes.size(), names.size(), pad_right(name, 26).c_str(), seconds_since(start)));
-  }
-  t.load_after = load();
+  measure_scenes(t, scenes.empty() ? peer_scenes() : scenes, budget, [&](const std::string& scene) { return measure_peers(open_scene(scene), rows, budget); },
+                 [](const std::string& scene) { return scene; }, progress, stop);
   return t;
 }
 

@@ -10,9 +10,9 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 
+#include "bench/beside.h"
 #include "bench/interleaved.h"
 #include "bench/peers/peer.h"
-#include "bench/results.h"
 
 namespace delassus::bench {
 
@@ -45,11 +45,7 @@ struct PeerScene {
   [[nodiscard]] double ratio(const PeerEntry& peer, Step step, const std::string& ours) const;
 };
 
-struct PeerTable {
-  Machine machine;
-  std::string kernels;
-  double budget = 0, load = 0, load_after = 0;  ///< seconds per row and step; load averages at the start and at the end
-  bool interrupted = false;
+struct PeerTable : Beside {
   std::vector<PeerScene> scenes;
 
   [[nodiscard]] int disagreements() const;

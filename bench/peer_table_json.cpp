@@ -1,5 +1,4 @@
 #include "bench/json.h"
-#include "bench/machine.h"
 #include "bench/peer_table.h"
 
 namespace delassus::bench {
@@ -45,20 +44,13 @@ PeerScene scene_read(const json& j) {
 }  // namespace
 
 void to_json(json& j, const PeerTable& t) {
-  json machine = t.machine;
-  machine["kernels"] = t.kernels, machine["load"] = {number(t.load), number(t.load_after)};
-  j = {{"machine", machine},
-       {"units", {{"time", "µs per call"}, {"damping", "1/kg"}}}, {"budget_seconds", t.budget}, {"interrupted", t.interrupted}, {"peers", json::array()}};
+  j = {{"units", {{"time", "µs per call"}, {"damping", "1/kg"}}}, {"peers", json::array()}};
+  write(j, t);
   for (const PeerScene& s : t.scenes) j["peers"].push_back(written(s));
 }
 
 void from_json(const json& j, PeerTable& t) {
-  const json& m = j.at("machine");
-  t.machine = m;
-  t.kernels = m.at("kernels");
-  t.load = number_of(m.at("load").at(0)), t.load_after = number_of(m.at("load").at(1));
-  t.budget = j.at("budget_seconds");
-  t.interrupted = j.at("interrupted");
+  read(j, t);
   t.scenes.clear();
   for (const json& s : j.at("peers")) t.scenes.push_back(scene_read(s));
 }

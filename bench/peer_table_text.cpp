@@ -45,18 +45,10 @@ Ratios ratios(const PeerTable& t, const std::string& peer, std::size_t k, bool c
   return r;
 }
 
-std::vector<PeerEntry> peers_of(const PeerTable& t) {
-  std::vector<PeerEntry> out;
-  if (!t.scenes.empty())
-    for (const PeerEntry& e : t.scenes.front().entries)
-      if (!e.ours()) out.push_back(e);
-  return out;
-}
-
 std::string ratio_table(const PeerTable& t) {
   Cells cells{{"peer", "ours"}};
   for (std::size_t k = 0; k < step_count; ++k) cells[0].push_back(title(k));
-  for (const PeerEntry& e : peers_of(t))
+  for (const PeerEntry& e : from_outside(t))
     for (const bool certified : {false, true}) {
       if (certified && (e.solve.empty() || e.solve == certified_default)) continue;
       std::vector<std::string> line{e.name, certified ? certified_default : e.solve.empty() || e.solve == e.product ? e.product : e.product + ", " + e.solve};
@@ -70,7 +62,7 @@ std::string ratio_table(const PeerTable& t) {
 /// Where a peer is faster than its counterpart of the same algorithm, cell by cell.
 std::string wins_text(const PeerTable& t) {
   std::string s = "### Where the peer is faster\n";
-  for (const PeerEntry& e : peers_of(t))
+  for (const PeerEntry& e : from_outside(t))
     for (const bool certified : {false, true}) {
       if (certified && (e.solve.empty() || e.solve == certified_default)) continue;
       std::string where;
@@ -140,13 +132,11 @@ std::string spread_line(const PeerTable& t) {
 }  // namespace
 
 std::string peer_text(const PeerTable& t) {
-  const Machine& m = t.machine;
-  std::string s = m.processor + ", " + m.system + "; " + m.compiler + " " + m.flags + "; our kernels: " + t.kernels + "; revision " + m.revision + ", " + m.date +
-                  format("; load average %.1f at the start, %.1f at the end, on %d cores.\n", t.load, t.load_after, m.cores) +
+  std::string s = t.text() +
                   "Medians of up to 15 rounds, all of a scene in turn in one process, by the clock of the thread." + spread_line(t) + "\n";
   if (t.interrupted) s += "**Interrupted**: scenes are missing.\n";
   if (t.disagreements() > 0) s += format("**%d were not timed**: their answers are not those of the definition.\n", t.disagreements());
-  for (const PeerEntry& e : peers_of(t)) s += "- `" + e.name + "`: " + e.program + ", " + e.what + "\n";
+  for (const PeerEntry& e : from_outside(t)) s += "- `" + e.name + "`: " + e.program + ", " + e.what + "\n";
   s += "\n" + ratio_table(t) + "\n" + wins_text(t) + "\n### Scene by scene [µs], and relative errors\nM: |δM_ij|/√(M_ii M_jj); a: of the product; λ: of the largest force. *: its first steps begin at q, kinematics included; its ratios above count ours likewise. A first product of ours "
          "that keeps a matrix is without the factor of A.\n";
   for (const PeerScene& scene : t.scenes) s += "\n" + scene_table(scene);

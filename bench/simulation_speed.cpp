@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 
 #include "algorithms/delassus.h"
@@ -100,11 +99,6 @@ void judge(Simulator& s, const Model& model, int steps, SpeedEntry& entry) {
 std::string in_a_line(std::string s) {
   std::replace(s.begin(), s.end(), '\n', ' ');
   return s;
-}
-
-double load_now() {
-  double now[1];
-  return getloadavg(now, 1) == 1 ? now[0] : NAN;
 }
 
 SpeedExample example_of(const std::string& name) {
@@ -223,22 +217,10 @@ SimulationSpeed measure_speed(const std::vector<std::string>& examples, const st
     throw ModelError("", "--simulation", "no simulator from outside is compiled into this program",
                      "MuJoCo 2 (libmujoco-dev), found when the program is built: docs/simulation_speed.md; --from prints the results of a run");
   SimulationSpeed t;
-  t.machine = this_machine();
-  t.kernels = std::string(kernels());
-  t.budget = budget, t.load = load_now();
   std::vector<SpeedExample> wanted;
   for (const std::string& name : examples) wanted.push_back(example_of(name));
   if (wanted.empty()) wanted = speed_examples();
-  const auto start = std::chrono::steady_clock::now();
-  for (const SpeedExample& e : wanted) {
-    if (stop && stop()) {
-      t.interrupted = true;
-      break;
-    }
-    t.scenes.push_back(measure_speed(e, rows, budget));
-    progress(format("%2zu/%zu  %s  %.0f s", t.scenes.size(), wanted.size(), pad_right(e.name, 26).c_str(), seconds_since(start)));
-  }
-  t.load_after = load_now();
+  measure_scenes(t, wanted, budget, [&](const SpeedExample& e) { return measure_speed(e, rows, budget); }, [](const SpeedExample& e) { return e.name; }, progress, stop);
   return t;
 }
 

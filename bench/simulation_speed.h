@@ -12,9 +12,9 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 
+#include "bench/beside.h"
 #include "bench/interleaved.h"
 #include "bench/peers/simulator.h"
-#include "bench/results.h"
 #include "bench/step_residual.h"
 
 namespace delassus::bench {
@@ -65,11 +65,7 @@ inline constexpr const char* own_name = "delassus";
 /// Ours, asked for the residual of another.
 [[nodiscard]] std::string own_name_at(const std::string& other);
 
-struct SimulationSpeed {
-  Machine machine;
-  std::string kernels;
-  double budget = 0, load = 0, load_after = 0;  ///< seconds per row; load averages at the start and at the end
-  bool interrupted = false;
+struct SimulationSpeed : Beside {
   std::vector<SpeedScene> scenes;
 
   [[nodiscard]] int disagreements() const;

@@ -1,5 +1,4 @@
 #include "bench/json.h"
-#include "bench/machine.h"
 #include "bench/simulation_speed.h"
 
 namespace delassus::bench {
@@ -36,21 +35,14 @@ SpeedEntry entry_read(const json& j) {
 }  // namespace
 
 void to_json(json& j, const SimulationSpeed& t) {
-  json machine = t.machine;
-  machine["kernels"] = t.kernels, machine["load"] = {number(t.load), number(t.load_after)};
-  j = {{"machine", machine}, {"units", {{"time", "µs"}, {"natural, approach", "m/s"}, {"cone, momentum", "N s"}, {"depth", "m"}}}, {"step_seconds", speed_step}, {"budget_seconds", t.budget},
-       {"interrupted", t.interrupted}, {"speeds", json::array()}};
+  j = {{"units", {{"time", "µs"}, {"natural, approach", "m/s"}, {"cone, momentum", "N s"}, {"depth", "m"}}}, {"step_seconds", speed_step}, {"speeds", json::array()}};
+  write(j, t);
   for (const SpeedScene& s : t.scenes)
     for (const SpeedEntry& e : s.entries) j["speeds"].push_back(written(s, e));
 }
 
 void from_json(const json& j, SimulationSpeed& t) {
-  const json& m = j.at("machine");
-  t.machine = m;
-  t.kernels = m.at("kernels");
-  t.load = number_of(m.at("load").at(0)), t.load_after = number_of(m.at("load").at(1));
-  t.budget = j.at("budget_seconds");
-  t.interrupted = j.at("interrupted");
+  read(j, t);
   t.scenes.clear();
   for (const json& s : j.at("speeds")) {
     if (t.scenes.empty() || t.scenes.back().example.name != s.at("example").get<std::string>()) {

@@ -15,15 +15,6 @@ std::string count(double x) { return std::isnan(x) ? "–" : format("%.0f", x); 
 /// Time of a step of one over that of the other; NaN: one has none.
 double ratio(const SpeedEntry* theirs, const SpeedEntry* ours) { return theirs != nullptr && ours != nullptr ? theirs->time.median / ours->time.median : NAN; }
 
-/// Programs from outside, in the order of the first scene that has them.
-std::vector<SpeedEntry> others(const SimulationSpeed& t) {
-  std::vector<SpeedEntry> out;
-  if (!t.scenes.empty())
-    for (const SpeedEntry& e : t.scenes.front().entries)
-      if (!e.ours()) out.push_back(e);
-  return out;
-}
-
 std::string counts(const SpeedScene& s, std::int64_t SpeedEntry::*what) {
   std::string out;
   for (const SpeedEntry& e : s.entries)
@@ -33,7 +24,7 @@ std::string counts(const SpeedScene& s, std::int64_t SpeedEntry::*what) {
 
 std::string main_table(const SimulationSpeed& t) {
   Cells cells{{"example", "dofs", "rows", "ours", "residual"}};
-  for (const SpeedEntry& e : others(t)) cells[0].insert(cells[0].end(), {e.name, "residual", "ratio", "ours, no coarser", "ratio"});
+  for (const SpeedEntry& e : from_outside(t)) cells[0].insert(cells[0].end(), {e.name, "residual", "ratio", "ours, no coarser", "ratio"});
   for (const SpeedScene& s : t.scenes) {
     std::vector<std::string> line{s.example.name, std::to_string(s.dofs), counts(s, &SpeedEntry::rows)};
     const auto speed = [&](const SpeedEntry* e) { line.push_back(e == nullptr || !e->time.measured() ? "–" : count(e->steps_per_second()) + (e->ended.empty() ? "" : " †")); };
@@ -42,7 +33,7 @@ std::string main_table(const SimulationSpeed& t) {
       line.push_back(line.back() == "–" || std::isnan(e->median.natural) ? "–" : short_number(e->median.natural) + " (" + short_number(e->worst.natural) + ")");
     };
     pair(s.find(own_name));
-    for (const SpeedEntry& e : others(t)) {
+    for (const SpeedEntry& e : from_outside(t)) {
       pair(s.find(e.name));
       line.push_back(three_digits(ratio(s.find(e.name), s.find(own_name))));
       speed(s.as_accurate_as(e.name));
@@ -56,7 +47,7 @@ std::string main_table(const SimulationSpeed& t) {
 /// Ours is slower there.
 std::string wins(const SimulationSpeed& t) {
   std::string s;
-  for (const SpeedEntry& e : others(t))
+  for (const SpeedEntry& e : from_outside(t))
     for (const bool equal : {true, false}) {
       std::string robots, rest;
       int compared = 0;
@@ -104,13 +95,11 @@ std::string left_out(const SimulationSpeed& t) {
 }  // namespace
 
 std::string speed_text(const SimulationSpeed& t) {
-  const Machine& m = t.machine;
-  std::string s = m.processor + ", " + m.system + "; " + m.compiler + " " + m.flags + "; our kernels: " + t.kernels + "; revision " + m.revision + ", " + m.date +
-                  format("; load average %.1f at the start, %.1f at the end, on %d cores.\n", t.load, t.load_after, m.cores) +
+  std::string s = t.text() +
                   "Medians of 3 to 15 runs, all of an example in turn in one process, by the clock of the thread.\n";
   if (t.interrupted) s += "**Interrupted**: examples are missing.\n";
   if (t.disagreements() > 0) s += format("**%d were not timed**: they do not move as ours without rows.\n", t.disagreements());
-  for (const SpeedEntry& e : others(t)) s += "- `" + e.name + "`: " + e.program + ", " + e.what + "\n";
+  for (const SpeedEntry& e : from_outside(t)) s += "- `" + e.name + "`: " + e.program + ", " + e.what + "\n";
   return s + "\n### Steps per second\nResidual: natural, in m/s, median of the steps that were judged (the largest). Ratio: time of a step over ours, above 1 ours is faster.\n\n" + main_table(t) +
          "\n### Where others are faster\n" + wins(t) + "\n### All numbers\n" + detail_table(t) + left_out(t);
 }

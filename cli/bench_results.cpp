@@ -60,28 +60,24 @@ int run_table1(const Table1Options& o) {
   return end_of_run(good, "scenes are missing");
 }
 
+namespace {
+/// Ours beside programs from outside: what a run wrote (`from`), or measured now.
+template <class Table, class Measure>
+int run_beside(const std::string& from, bool as_json, const std::string& option, const char* missing, const Measure& measure, std::string (*text)(const Table&)) {
+  if (from.empty()) keep_on_interrupt();
+  const Table t = from.empty() ? measure() : read_results<Table>(from, "what `delassus bench " + option + " --json` prints; write it with > FILE");
+  print(t, as_json, text);
+  return from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, missing) : good;
+}
+}  // namespace
+
 int run_peers(const PeersOptions& o) {
-  bench::PeerTable t;
-  if (!o.from.empty()) {
-    t = read_results<bench::PeerTable>(o.from, "what `delassus bench --peers --json` prints; write it with > FILE");
-  } else {
-    keep_on_interrupt();
-    t = bench::measure_peers(o.scenes, bench::peers(), o.budget, say, interrupted);
-  }
-  print(t, o.as_json, bench::peer_text);
-  return o.from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, "scenes are missing") : good;
+  return run_beside(o.from, o.as_json, "--peers", "scenes are missing", [&] { return bench::measure_peers(o.scenes, bench::peers(), o.budget, say, interrupted); }, bench::peer_text);
 }
 
 int run_simulation(const SimulationOptions& o) {
-  bench::SimulationSpeed t;
-  if (!o.from.empty()) {
-    t = read_results<bench::SimulationSpeed>(o.from, "what `delassus bench --simulation --json` prints; write it with > FILE");
-  } else {
-    keep_on_interrupt();
-    t = bench::measure_speed(o.scenes, bench::simulators(), o.budget, say, interrupted);
-  }
-  print(t, o.as_json, bench::speed_text);
-  return o.from.empty() ? end_of_run(t.disagreements() > 0 ? law_broken : good, "examples are missing") : good;
+  return run_beside(o.from, o.as_json, "--simulation", "examples are missing", [&] { return bench::measure_speed(o.scenes, bench::simulators(), o.budget, say, interrupted); },
+                    bench::speed_text);
 }
 
 int run_swimmers(const SwimmersOptions& o) {

@@ -57,9 +57,8 @@ void against(WitnessContact (*witness)(const Shape&, const Shape&), bool (*takes
       if (!takes(a, b) || ((a == Kind::hull || b == Kind::hull) && !has_hulls())) continue;
       const Count c = compare(a, b, witness, tolerance);
       const int all = c.agree + c.worse_direction + c.other_depth + c.nothing + c.better;
-      if (std::getenv("SHOW"))
-        std::printf("%-8s %-8s of %3d: agree %3d, direction worse %3d, depth not of its normal %3d, nothing found %3d, better %3d\n", name_of(a), name_of(b), all, c.agree,
-                    c.worse_direction, c.other_depth, c.nothing, c.better);
+      std::printf("%-8s %-8s of %3d: agree %3d, direction worse %3d, depth not of its normal %3d, nothing found %3d, better %3d\n", name_of(a), name_of(b), all, c.agree,
+                  c.worse_direction, c.other_depth, c.nothing, c.better);
       EXPECT_EQ(c.better, 0) << name_of(a) << ' ' << name_of(b);
       EXPECT_GT(all, 60);
       EXPECT_GE(c.agree, share(a, b) * all) << name_of(a) << ' ' << name_of(b) << " of " << all;

@@ -131,7 +131,7 @@ TEST(ConvexContacts, gap_normal_and_points_against_brute_force) {
     EXPECT_LE(brute - along, tie * size) << what << ": " << brute << ' ' << along;
     manifolds += f.contacts.size() > 1, ++(along > 0 ? apart : deep);
   });
-  if (std::getenv("SHOW")) std::printf("apart %d deep %d none %d manifolds %d; gap %.1e lost %.1e\n", apart, deep, none, manifolds, worst, lost);
+  std::printf("apart %d deep %d none %d manifolds %d; gap %.1e lost %.1e\n", apart, deep, none, manifolds, worst, lost);
   EXPECT_TRUE(apart > 100 && deep > 100 && none > 5 && manifolds > 100);
 }
 

@@ -95,7 +95,7 @@ TEST(NearPairs, cost_is_near_linear_however_they_are_spread) {
       per_ball[k] = static_cast<double>(tested) / static_cast<double>(n);
       EXPECT_GT(found.size(), static_cast<std::size_t>(n / 10)) << name;
     }
-    if (std::getenv("SHOW")) std::printf("%-20s pairs looked at per ball: %.1f of 10^3, %.1f of 10^4\n", name.c_str(), per_ball[0], per_ball[1]);
+    std::printf("%-20s pairs looked at per ball: %.1f of 10^3, %.1f of 10^4\n", name.c_str(), per_ball[0], per_ball[1]);
     EXPECT_LT(per_ball[1], 1.5 * per_ball[0]) << name;
     EXPECT_LT(per_ball[1], 150) << name;
   }
