@@ -54,6 +54,21 @@ TEST(Sleep, what_rests_falls_asleep_and_stays) {
   EXPECT_EQ(s.state().impulses.size(), fell.impulses.size());
 }
 
+/// One alone, whose island is the same with its rows and without: at its first step asleep it is not moved, and keeps its impulses.
+TEST(Sleep, one_alone_is_not_moved) {
+  Scene scene = resting_box();
+  scene.motion.sleeping = limits;
+  Simulation<double> s(scene, step_of(h));
+  steps(s, 10);
+  ASSERT_EQ(asleep(s.state()), 1);
+  const State<double> fell = s.state();
+  ASSERT_FALSE(fell.impulses.empty());
+  steps(s, 1);
+  EXPECT_EQ(s.last().rows, 0);
+  EXPECT_TRUE(s.state().q == fell.q);
+  EXPECT_EQ(s.state().impulses.size(), fell.impulses.size());
+}
+
 /// A step with everything asleep has no operation.
 TEST(Sleep, asleep_costs_nothing) {
   Simulation<Counted> s(tower(0, 0, 0), step_of(h));
