@@ -75,6 +75,7 @@ class Picture {
   Picture(const Scene& scene, const Annotation& annotation)
       : scene_(scene), annotation_(annotation), pose_(world_poses(scene)), camera_(Camera::from(-0.95, 0.36)) {
     for (std::size_t i = 0; i < pose_.size(); ++i) add_body(i);
+    add_standing();
     for (const Constraint& c : scene.model.constraints) add_constraint(c);
     std::stable_sort(surfaces_.begin(), surfaces_.end(),
                      [](const Surface& a, const Surface& b) { return a.nearness < b.nearness; });
@@ -111,6 +112,11 @@ class Picture {
     if (!free) marks_.push_back({here, joint_mark, "joint"});
     if (body.parent != ground) lines_.push_back({camera_(pose_[static_cast<std::size_t>(body.parent)].translation), here, "link" + style});
     if (body.shapes.empty() && body.com.norm() > 0) lines_.push_back({here, camera_(pose_[i] * body.com), "link" + style});
+  }
+
+  void add_standing() {
+    for (const Standing& s : scene_.motion.search.standing)
+      surfaces_.push_back({camera_.nearness(s.shape.placement.translation), patches(s.shape, s.shape.placement, camera_), ""});
   }
 
   Point end_point(const Frame& f) const {

@@ -33,7 +33,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)").matches, ink = dark ? "#
 const colours = ["#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#76b7b2", "#b07aa1", "#9c755f"];
 const root = data.parents.map((p, i) => i); data.parents.forEach((p, i) => { if (p >= 0) root[i] = root[p]; });
 const rank = new Map(); root.forEach(r => { if (!rank.has(r)) rank.set(r, rank.size); });
-const rgb = i => { const c = colours[rank.get(root[i]) % colours.length]; return [1, 3, 5].map(k => parseInt(c.slice(k, k + 2), 16)); };
+const rgb = i => { const c = i < 0 ? "#999999" : colours[rank.get(root[i]) % colours.length]; return [1, 3, 5].map(k => parseInt(c.slice(k, k + 2), 16)); };
 const turn = (q, x) => { const [w, a, b, c] = q, t = [2 * (b * x[2] - c * x[1]), 2 * (c * x[0] - a * x[2]), 2 * (a * x[1] - b * x[0])];
   return [x[0] + w * t[0] + b * t[2] - c * t[1], x[1] + w * t[1] + c * t[0] - a * t[2], x[2] + w * t[2] + a * t[1] - b * t[0]]; };
 const add = (x, y) => x.map((v, k) => v + y[k]), sub = (x, y) => x.map((v, k) => v - y[k]), dot = (x, y) => x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -54,7 +54,7 @@ function faces(s) {
   return out;
 }
 data.shapes.forEach(s => { s.faces = faces(s); s.balls = s.kind === "sphere" ? [[0, 0, 0]] : s.kind === "capsule" ? [[0, 0, -s.size[1]], [0, 0, s.size[1]]] : []; });
-const pose = (f, i) => f.p.slice(7 * i, 7 * i + 7);
+const pose = (f, i) => i < 0 ? [0, 0, 0, 1, 0, 0, 0] : f.p.slice(7 * i, 7 * i + 7);
 let low = [1e9, 1e9, 1e9], high = [-1e9, -1e9, -1e9];
 for (let i = 0; i < N; ++i) { const x = pose(F[0], i); for (let k = 0; k < 3; ++k) { low[k] = Math.min(low[k], x[k]); high[k] = Math.max(high[k], x[k]); } }
 let size = 0.3; for (let k = 0; k < 3; ++k) size = Math.max(size, high[k] - low[k]);

@@ -37,6 +37,7 @@ json scene_json(const Scene& scene, double step) {
     weight += b.mass * scene.gravity.norm();
     for (const Shape& s : b.shapes) out["shapes"].push_back(shape_json(s, static_cast<Index>(i)));
   }
+  for (const Standing& s : scene.motion.search.standing) out["shapes"].push_back(shape_json(s.shape, ground));
   out["weight"] = weight;
   for (const auto& e : simulation::effects())
     if (e.call(scene).called) out["effects"].push_back(e.name);

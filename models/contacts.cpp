@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
+#include <span>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -29,12 +29,14 @@ namespace {
 
 using V3 = Vector3<double>;
 
-/// A primitive at the configuration; positions from the reference point of its tree.
+/// A primitive at the configuration; positions from the reference point of its tree, the world's origin for what stands.
 struct Placed {
   Index body;
   const Shape* shape;
   Pose<double> pose;
-  double radius;  // of a sphere around pose.translation that holds the shape
+  double radius;        // of a sphere around pose.translation that holds the shape
+  Index number;         // among the shapes of its body
+  Index standing = -1;  // its number there
 };
 
 double bounding_radius(const Shape& s) {
@@ -48,14 +50,19 @@ double bounding_radius(const Shape& s) {
   return 0;
 }
 
-const V3& reference_of(const Poses<double>& poses, Index body) {
-  return poses.reference[static_cast<std::size_t>(poses.tree[static_cast<std::size_t>(body)])];
+V3 reference_of(const Poses<double>& poses, Index body) {
+  return body == ground ? V3(V3::Zero()) : poses.reference[static_cast<std::size_t>(poses.tree[static_cast<std::size_t>(body)])];
 }
 
-double margin_of(const ContactSearch& s, Index body) { return s.ahead.empty() ? s.margin : s.margin + s.ahead[static_cast<std::size_t>(body)]; }
+double margin_of(const ContactSearch& s, Index body) { return s.ahead.empty() || body == ground ? s.margin : s.margin + s.ahead[static_cast<std::size_t>(body)]; }
 double margin_of(const ContactSearch& s, Index a, Index b) { return std::max(margin_of(s, a), margin_of(s, b)); }
 
-bool rests(const ContactSearch& s, Index body) { return s.resting != nullptr && (*s.resting)[static_cast<std::size_t>(body)] != 0; }
+bool rests(const ContactSearch& s, Index body) { return body == ground || (s.resting != nullptr && (*s.resting)[static_cast<std::size_t>(body)] != 0); }
+
+/// By the shapes of two bodies (the plane is none), and the place among those they share.
+Index feature_of(const Placed& a, const Placed* b, std::size_t place) {
+  return (a.number << 40) + ((b == nullptr ? 0 : b->number + 1) << 20) + static_cast<Index>(place);
+}
 
 double smaller_friction(double a, double b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
@@ -127,6 +134,7 @@ void ground_contacts(const Placed& p, double height, double margin, std::vector<
     std::size_t kept = 0;
     std::erase_if(found, [&](const ContactPoint& c) { return c.gap > gaps[3] || ++kept > 4; });
   }
+  for (std::size_t k = 0; k < found.size(); ++k) found[k].feature = feature_of(p, nullptr, k);
   out.insert(out.end(), found.begin(), found.end());
 }
 
@@ -199,7 +207,7 @@ std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const 
 std::vector<Ball> balls_of(const std::vector<Placed>& shapes, const Poses<double>& poses, const ContactSearch& search) {
   std::vector<Ball> out;
   for (const Placed& p : shapes) {
-    const Index object = search.object.empty() ? 0 : search.object[static_cast<std::size_t>(p.body)];
+    const Index object = p.body == ground ? search.standing[static_cast<std::size_t>(p.standing)].object : search.object.empty() ? 0 : search.object[static_cast<std::size_t>(p.body)];
     out.push_back({reference_of(poses, p.body) + p.pose.translation, p.radius, margin_of(search, p.body), object, rests(search, p.body)});
   }
   return out;
@@ -230,21 +238,29 @@ Pose<double> relative_pose(const Poses<double>& poses, Index in, Index body) {
   return {Rt * poses.rotation[j], Rt * (shift + (poses.position[j] - poses.position[i]))};
 }
 
-std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model) {
+std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model, const std::vector<Standing>& standing) {
   auto out = std::make_shared<HullSurfaces>();
+  const auto add = [&](const Shape& s) {
+    if (s.kind != Shape::Kind::hull || !has_hulls()) return;
+    try {
+      out->all.push_back({s.points, hull_polytope(*s.points)});
+    } catch (const std::runtime_error&) {  // counted where it is near something
+    }
+  };
   for (const Body& body : model.bodies)
-    for (const Shape& s : body.shapes)
-      if (s.kind == Shape::Kind::hull && has_hulls()) {
-        try {
-          out->all.push_back({s.points, hull_polytope(*s.points)});
-        } catch (const std::runtime_error&) {  // counted where it is near something
-        }
-      }
+    for (const Shape& s : body.shapes) add(s);
+  for (const Standing& s : standing) add(s.shape);
   std::sort(out->all.begin(), out->all.end(), [](const auto& a, const auto& b) { return a.points < b.points; });
   return out;
 }
 
-std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object) {
+bool floats(const Model& model, Index body) {
+  const auto of = [&](Index i) -> const Body& { return model.bodies[static_cast<std::size_t>(i)]; };
+  while (of(body).parent != ground) body = of(body).parent;
+  return of(body).joint.type == JointType::floating;
+}
+
+std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object, const std::vector<Standing>& standing) {
   std::vector<std::pair<Index, Index>> out;
   const auto body = [&](Index i) -> const Body& { return model.bodies[static_cast<std::size_t>(i)]; };
   const auto with_shapes = [&](Index i) {
@@ -253,8 +269,13 @@ std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::v
   };
   const auto take = [&](Index i, Index j) {
     i = with_shapes(i), j = with_shapes(j);
-    if (i == ground || j == ground || i == j || object[static_cast<std::size_t>(i)] != object[static_cast<std::size_t>(j)]) return;
-    out.push_back(std::minmax(i, j));
+    if (i == j) return;
+    if (i == ground || j == ground) {
+      const Index moving = std::max(i, j), of = object[static_cast<std::size_t>(moving)];
+      if (!floats(model, moving) && std::any_of(standing.begin(), standing.end(), [&](const Standing& s) { return s.object == -1 - of; })) out.emplace_back(-1 - of, moving);
+    } else if (object[static_cast<std::size_t>(i)] == object[static_cast<std::size_t>(j)]) {
+      out.push_back(std::minmax(i, j));
+    }
   };
   for (Index i = 0; i < static_cast<Index>(model.bodies.size()); ++i) take(i, body(i).parent);
   for (const Constraint& c : model.constraints)
@@ -269,16 +290,22 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
   std::vector<Placed> shapes;
   for (std::size_t i = 0; i < model.bodies.size(); ++i)
     for (const Shape& s : model.bodies[i].shapes)
-      shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s)});
+      shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s), &s - model.bodies[i].shapes.data()});
+  const std::size_t moving = shapes.size();
+  for (const Standing& s : search.standing) {
+    const Index k = &s - search.standing.data();
+    shapes.push_back({ground, &s.shape, s.shape.placement, bounding_radius(s.shape), k, k});
+  }
   std::vector<ContactPoint> out;
   if (search.ground)
-    for (const Placed& p : shapes)
+    for (const Placed& p : std::span(shapes).first(moving))
       if (!rests(search, p.body)) ground_contacts(p, search.ground_height - reference_of(poses, p.body)[2], margin_of(search, p.body), out);
-  const std::shared_ptr<const HullSurfaces> hulls = search.hulls != nullptr ? search.hulls : hull_surfaces(model);
+  const std::shared_ptr<const HullSurfaces> hulls = search.hulls != nullptr ? search.hulls : hull_surfaces(model, search.standing);
+  const auto who = [&](const Placed& p) { return p.body == ground ? search.standing[static_cast<std::size_t>(p.standing)].object : p.body; };
   Index without_surface = 0;
   for (const auto& [i, j] : near_pairs(balls_of(shapes, poses, search))) {
     const Placed &a = shapes[i], &b = shapes[j];
-    if (std::binary_search(search.apart.begin(), search.apart.end(), std::pair<Index, Index>(std::minmax(a.body, b.body)))) continue;
+    if (std::binary_search(search.apart.begin(), search.apart.end(), std::pair<Index, Index>(std::minmax(who(a), who(b))))) continue;
     const auto lacks = [&](const Placed& p) { return is(p, Shape::Kind::hull) && surface_of(*hulls, *p.shape) == nullptr; };
     if (lacks(a) || lacks(b)) {
       ++without_surface;
@@ -286,9 +313,10 @@ std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>&
     }
     const V3 shift = reference_of(poses, b.body) - reference_of(poses, a.body);
     const double margin = margin_of(search, a.body, b.body);
+    std::size_t place = 0;
     for (const ShapeContact& c : pair_contacts(a, b, shift, margin, *hulls))
       if (c.gap <= margin)
-        out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction)});
+        out.push_back({a.body, b.body, c.point, c.normal, c.gap, smaller_friction(a.shape->friction, b.shape->friction), b.standing, feature_of(a, &b, place++)});
   }
   if (without_surface > 0) notes.push_back(std::to_string(without_surface) + " near pairs with a mesh were not tested for contact: qhull finds no surface of it");
   return out;

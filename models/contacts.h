@@ -6,6 +6,7 @@
 //   pairs    sphere, capsule and box with each other: box–box by clipping the two nearest faces (1 point for crossed
 //            edges), capsule–box at ends, edges and the deepest place, capsule–capsule at the closest points; cylinders and
 //            hulls with these and each other: convex_contacts.h
+// What stands in the world meets what moves as another body would, and nothing else.
 // Hulls of which qhull finds no surface meet the ground alone: notes count their pairs.
 #pragma once
 
@@ -17,23 +18,34 @@
 
 namespace delassus {
 
+/// A shape that stands in the world: of a link that is fixed to it, or of a fixed box.
+struct Standing {
+  std::string name;  ///< `robot/link`, or the box
+  Shape shape;       ///< placed in the world
+  Index object = 0;  ///< as ContactSearch::object of a body; below 0: no body's
+};
+
 struct ContactPoint {
-  Index body = ground, other = ground;  ///< other: ground for the plane
+  Index body = ground, other = ground;  ///< other: ground for the plane and for what stands
   Vector3<double> point{0, 0, 0};       ///< on the plane, or midway between two shapes; from the reference point of `body`'s tree
   Vector3<double> normal{0, 0, 1};      ///< unit, world axes, from `other` to `body`
   double gap = 0;                       ///< [m], negative: penetration
   double friction = -1;                 ///< the smaller coefficient of the two shapes; negative: not given
+  Index standing = -1;                  ///< what stands, of ContactSearch::standing; −1: a body, or the plane
+  Index feature = 0;                    ///< which of all that `body` and `other` have in common; no two have the same
 };
 
 struct HullSurfaces;
-[[nodiscard]] std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model);  ///< faces and edges of all hulls of the model
+/// Faces and edges of all hulls of the model and of what stands.
+[[nodiscard]] std::shared_ptr<const HullSurfaces> hull_surfaces(const Model& model, const std::vector<Standing>& standing = {});
 
 struct ContactSearch {
   double margin = 1e-3;         ///< [m]
   bool ground = false;
   double ground_height = 0;     ///< [m]
   std::vector<Index> object;    ///< per body: robot or box it belongs to; bodies of one object do not collide
-  std::vector<std::pair<Index, Index>> apart;  ///< bodies that do not collide either, the smaller first, ascending
+  std::vector<Standing> standing;              ///< in the world
+  std::vector<std::pair<Index, Index>> apart;  ///< bodies, and objects below 0 of what stands, that do not collide either: the smaller first, ascending
   std::vector<double> ahead;    ///< per body [m]: as much is added to the margin, of a pair the larger; empty: nothing
   std::shared_ptr<const HullSurfaces> hulls;  ///< those of the model, found once; null: found at each search
   const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: what rests is not looked for but against what does not; null: all
@@ -45,8 +57,11 @@ struct ContactSearch {
                                                       const ContactSearch& search, std::vector<std::string>& notes);
 
 /// Pairs of bodies of one object that share a joint or a constraint, directly or through bodies without shapes: what `apart` is made of
-/// where every body is an object of its own.
-[[nodiscard]] std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object);
+/// where every body is an object of its own. What stands is one body, −1 − its object; who floats on it is no neighbour.
+[[nodiscard]] std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::vector<Index>& object, const std::vector<Standing>& standing = {});
+
+/// Whether a body hangs on a root that floats.
+[[nodiscard]] bool floats(const Model& model, Index body);
 
 /// Two axes that complete z to a right-handed orthonormal frame [x y z]; z = (0, 0, 1) gives the identity.
 [[nodiscard]] Matrix3<double> frame_about(const Vector3<double>& z);

@@ -156,7 +156,7 @@ struct Read {
 /// Hulls of the meshes of one robot, with what is to be told.
 class Hulls {
  public:
-  Hulls(Model& model, const Robot& robot, Index most, double margin, Findings& found)
+  Hulls(Model& model, Robot& robot, Index most, double margin, Findings& found)
       : model_(model), robot_(robot), most_(most), margin_(margin), found_(found) {}
 
   void run() {
@@ -214,7 +214,8 @@ class Hulls {
     s.placement = m.placement * Pose<double>{Matrix3<double>::Identity(), centre};
     s.friction = m.friction;
     s.points = std::move(points);
-    model_.bodies[static_cast<std::size_t>(m.body)].shapes.push_back(std::move(s));
+    if (m.body == ground) robot_.standing.push_back({m.link, std::move(s)});
+    else model_.bodies[static_cast<std::size_t>(m.body)].shapes.push_back(std::move(s));
     ++read_;
     if (static_cast<Index>(hull.vertices.size()) == hull.all) return;
     ++cut_count_;
@@ -225,7 +226,7 @@ class Hulls {
   }
 
   Model& model_;
-  const Robot& robot_;
+  Robot& robot_;
   Index most_;
   double margin_;
   Findings& found_;
@@ -237,7 +238,7 @@ class Hulls {
 
 }  // namespace
 
-void add_hulls(Model& model, const Robot& robot, Index most, double margin, Findings& found) {
+void add_hulls(Model& model, Robot& robot, Index most, double margin, Findings& found) {
   if (robot.meshes.empty()) return;
   const std::string without = has_hulls() ? "assimp" : has_mesh_files() ? "qhull" : "assimp and qhull";
   const std::string package = has_hulls() ? "libassimp-dev" : has_mesh_files() ? "libqhull-dev" : "libassimp-dev and libqhull-dev";

@@ -24,9 +24,9 @@ namespace delassus {
 /// @throws std::runtime_error with assimp's message; when nothing of that name is there, or no point is finite.
 [[nodiscard]] std::vector<Vector3<double>> mesh_points(const std::string& file, const std::string& part = "");
 
-/// Adds the hull of every mesh of a robot to the shapes of its body, at most `most` vertices each. Warns about meshes that
+/// Adds the hull of every mesh of a robot to the shapes of its body, or to what stands, at most `most` vertices each. Warns about meshes that
 /// are not found or cannot be read, and about hulls cut by more than `margin` [m]; notes how many were read and how far
 /// they were cut. A file is read once. Cost: reading, and O(n log n) per mesh of n points.
-void add_hulls(Model& model, const Robot& robot, Index most, double margin, Findings& found);
+void add_hulls(Model& model, Robot& robot, Index most, double margin, Findings& found);
 
 }  // namespace delassus

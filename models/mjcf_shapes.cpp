@@ -82,24 +82,24 @@ void MjcfReader::add_shape(int g) {
       if (fill_mesh(g, s)) break;
       [[fallthrough]];
     default:
-      findings_.warn("shape without contacts", options_.file, element, "a shape of this kind on a moving body is left out", "spheres, capsules, cylinders, boxes, ellipsoids, meshes");
+      findings_.warn("shape without contacts", options_.file, element, "a shape of this kind is left out", "spheres, capsules, cylinders, boxes, ellipsoids, meshes");
       return;
   }
-  bodies_.body(at.body).shapes.push_back(std::move(s));
+  if (at.body == ground) out_.standing.push_back({options_.robot + "/" + link_name(b), std::move(s)});
+  else bodies_.body(at.body).shapes.push_back(std::move(s));
 }
 
 void MjcfReader::add_shapes() {
-  int drawn = 0, fixed = 0, planes = 0;
+  int drawn = 0, planes = 0;
   for (int g = 0; g < m_.ngeom; ++g) {
     if (!collides(g)) ++drawn;
-    else if (link_[static_cast<std::size_t>(m_.geom_bodyid[g])].body != ground) add_shape(g);
-    else ++(m_.geom_type[g] == mjGEOM_PLANE ? planes : fixed);
+    else if (m_.geom_type[g] == mjGEOM_PLANE && link_[static_cast<std::size_t>(m_.geom_bodyid[g])].body == ground) ++planes;
+    else add_shape(g);
   }
   const auto say = [&](int n, const char* what) {
     if (n > 0) findings_.note(options_.robot + ": " + std::to_string(n) + " " + what);
   };
   say(drawn, "geom(s) that touch nothing (contype and conaffinity 0) are left out");
-  say(fixed, "geom(s) fixed to the world are left out");
   say(planes, "plane(s) of the file are left out; contacts are with `ground:` of the scene");
 }
 

@@ -8,6 +8,7 @@
 
 #include "algorithms/errors/status.h"
 #include "algorithms/mechanism/model.h"
+#include "models/contacts.h"
 
 namespace delassus {
 
@@ -68,6 +69,7 @@ struct Robot {
     std::string uri, part;                ///< as in the file; part: the one object of the mesh file that is meant, "": all
     std::string element;                  ///< `link "arm" <mesh> (line 7)`
     double friction = -1;                 ///< Coulomb coefficient; negative: not given
+    std::string link;                     ///< `robot/link`, whatever it is merged into
   };
   std::string name, root_joint;           ///< root_joint: name of the base joint, "" for a fixed base
   std::map<std::string, Frame> links;     ///< every link by its name in the file; merged ones at their place in the body
@@ -78,6 +80,7 @@ struct Robot {
   std::string file;                       ///< it was read from
   std::vector<std::string> mesh_path;
   std::vector<Mesh> meshes;
+  std::vector<Standing> standing;         ///< shapes of links that are fixed to the world
   std::vector<Mimic> mimics;              ///< their coupling constraints are already in the model
   std::vector<std::string> notes;
   std::vector<Warning> warnings;

@@ -18,18 +18,17 @@ Index RobotBodies::add(const std::string& link, Index parent, Joint joint, int l
 }
 
 void RobotBodies::place(const std::string& link, const Frame& at, const std::vector<Shape>& shapes, const std::vector<Robot::Mesh>& meshes,
-                        Robot& out, Tally& tally) {
+                        Robot& out) {
   out.links[link] = at;
-  if (at.body == ground) {
-    if (!shapes.empty() || !meshes.empty()) tally.add("fixed to the world, collision shapes left out", options_.robot + "/" + link);
-    return;
-  }
+  const std::string name = options_.robot + "/" + link;
   for (Shape s : shapes) {
     s.placement = at.placement * s.placement;
-    body(at.body).shapes.push_back(std::move(s));
+    if (at.body == ground) out.standing.push_back({name, std::move(s)});
+    else body(at.body).shapes.push_back(std::move(s));
   }
   for (Robot::Mesh m : meshes) {
     m.body = at.body;
+    m.link = name;
     m.placement = at.placement * m.placement;
     out.meshes.push_back(std::move(m));
   }

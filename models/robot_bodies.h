@@ -7,7 +7,6 @@
 
 #include "models/parts.h"
 #include "models/robot.h"
-#include "models/tally.h"
 
 namespace delassus {
 
@@ -18,9 +17,8 @@ class RobotBodies {
 
   /// A body without mass and shapes, `robot/link`. `line` of the link in the file, 0: not known. @returns its index in the model.
   Index add(const std::string& link, Index parent, Joint joint, int line);
-  /// Shapes and meshes given in the frame of a link that stands at `at`; those fixed to the world are counted only.
-  void place(const std::string& link, const Frame& at, const std::vector<Shape>& shapes, const std::vector<Robot::Mesh>& meshes,
-             Robot& out, Tally& tally);
+  /// Shapes and meshes given in the frame of a link that stands at `at`.
+  void place(const std::string& link, const Frame& at, const std::vector<Shape>& shapes, const std::vector<Robot::Mesh>& meshes, Robot& out);
   void add_part(Index body, const Part& part) { parts_[local(body)].push_back(part); }
   [[nodiscard]] Body& body(Index body) { return bodies_[local(body)]; }
   [[nodiscard]] bool empty() const { return bodies_.empty(); }

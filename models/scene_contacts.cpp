@@ -29,16 +29,41 @@ void SceneLoader::read_contact(const Yaml& y, double friction) {
   add(y, std::move(c));
 }
 
+/// From the first-th on, of the object.
+void SceneLoader::stand(const std::vector<Standing>& shapes, std::size_t first, Index object) {
+  for (std::size_t k = first; k < shapes.size(); ++k) {
+    scene_.motion.search.standing.push_back(shapes[k]);
+    scene_.motion.search.standing.back().object = object;
+  }
+}
+
+/// Of robots with bodies that float: what stands is an object of its own, on which these stand as on any table.
+void SceneLoader::stand_apart(ContactSearch& search) {
+  const auto n = static_cast<Index>(object_.size());
+  std::vector<bool> floating(static_cast<std::size_t>(objects_));
+  for (Index i = 0; i < n; ++i)
+    if (floats(scene_.model, i)) floating[static_cast<std::size_t>(object_[static_cast<std::size_t>(i)])] = true;
+  for (Standing& s : search.standing)
+    if (floating[static_cast<std::size_t>(s.object)]) s.object = -1 - s.object;
+  for (Index i = 0; i < n; ++i)
+    if (const Index of = object_[static_cast<std::size_t>(i)]; floating[static_cast<std::size_t>(of)] && !floats(scene_.model, i)) search.apart.emplace_back(-1 - of, i);
+  std::sort(search.apart.begin(), search.apart.end());
+}
+
 /// Every body an object of its own, but for neighbours and for those that touch already: they stand so by their model.
 void SceneLoader::collide_within(ContactSearch& search) {
-  search.apart = neighbours(scene_.model, object_);
+  for (Standing& s : search.standing) s.object = -1 - s.object;
+  search.apart = neighbours(scene_.model, object_, search.standing);
   for (std::size_t i = 0; i < object_.size(); ++i) search.object[i] = static_cast<Index>(i);
   std::vector<std::string> none;
   const std::size_t joined = search.apart.size();
   ContactSearch robots = search;
   robots.ground = false;
-  for (const ContactPoint& p : find_contacts(scene_.model, poses_, robots, none))
-    if (object_[static_cast<std::size_t>(p.body)] == object_[static_cast<std::size_t>(p.other)]) search.apart.push_back(std::minmax(p.body, p.other));
+  for (const ContactPoint& p : find_contacts(scene_.model, poses_, robots, none)) {
+    const Index of = object_[static_cast<std::size_t>(p.body)];
+    if (p.standing < 0 && of == object_[static_cast<std::size_t>(p.other)]) search.apart.push_back(std::minmax(p.body, p.other));
+    if (p.standing >= 0 && search.standing[static_cast<std::size_t>(p.standing)].object == -1 - of && !floats(scene_.model, p.body)) search.apart.emplace_back(-1 - of, p.body);
+  }
   std::sort(search.apart.begin(), search.apart.end());
   search.apart.erase(std::unique(search.apart.begin(), search.apart.end()), search.apart.end());
   if (const std::size_t touching = search.apart.size() - joined; touching > 0)
@@ -46,7 +71,7 @@ void SceneLoader::collide_within(ContactSearch& search) {
 }
 
 void SceneLoader::detect(const Yaml* y) {
-  ContactSearch search;
+  ContactSearch& search = scene_.motion.search;
   search.ground = scene_.has_ground;
   search.ground_height = scene_.ground_height;
   search.object = object_;
@@ -64,22 +89,27 @@ void SceneLoader::detect(const Yaml* y) {
   if (y != nullptr && y->has("hull_vertices") && (vertices = y->at("hull_vertices").index()) < 10)
     y->at("hull_vertices").fail(std::to_string(vertices) + " vertices are too few", "a whole number >= 10; leave it out for 64");
   Findings found(strict_);
-  if (scene_.has_ground || objects_ > 1 || within)
-    for (const Robot& r : robots_) add_hulls(scene_.model, r, vertices, search.margin, found);
+  const auto has_own = [&](const Robot& r) { return std::any_of(r.bodies.begin(), r.bodies.end(), [&](Index i) { return floats(scene_.model, i); }) && r.root_joint.empty(); };
+  for (std::size_t k = 0; k < robots_.size(); ++k) {
+    Robot& r = robots_[k];
+    const std::size_t before = r.standing.size();
+    if (scene_.has_ground || objects_ > 1 || within || has_own(r)) add_hulls(scene_.model, r, vertices, search.margin, found);
+    stand(r.standing, before, static_cast<Index>(k));
+  }
   scene_.notes.insert(scene_.notes.end(), found.notes.begin(), found.notes.end());
   scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());
   if (within) collide_within(search);
-  scene_.motion.search = search;
+  else stand_apart(search);
   for (const ContactPoint& p : find_contacts(scene_.model, poses_, search, scene_.notes)) {
     const auto i = static_cast<std::size_t>(p.body);
     Constraint c;
     c.kind = Constraint::Kind::contact;
-    c.name = "contact " + scene_.model.bodies[i].name + " - " + (p.other == ground ? "ground" : scene_.model.bodies[static_cast<std::size_t>(p.other)].name);
+    c.name = "contact " + scene_.model.bodies[i].name + " - " + (p.standing >= 0 ? search.standing[static_cast<std::size_t>(p.standing)].name : p.other == ground ? "ground" : scene_.model.bodies[static_cast<std::size_t>(p.other)].name);
     const Matrix3<double> Rt = poses_.rotation[i].transpose();
     c.a = {p.body, {Rt * frame_about(p.normal), Rt * (p.point - poses_.position[i])}};
     c.b = {p.other, relative_pose(poses_, p.other, p.body) * c.a.placement};
     c.friction = p.friction >= 0 ? p.friction : scene_.ground_friction;
-    if (p.other == ground && scene_.ground_friction >= 0) c.friction = scene_.ground_friction;
+    if (p.other == ground && p.standing < 0 && scene_.ground_friction >= 0) c.friction = scene_.ground_friction;
     if (y != nullptr && y->has("friction")) c.friction = y->at("friction").non_negative("");
     scene_.model.constraints.push_back(std::move(c));
     own_damping_.push_back(y != nullptr && y->has("damping") ? std::optional<Yaml>(y->at("damping")) : std::nullopt);

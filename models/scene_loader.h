@@ -78,6 +78,8 @@ class SceneLoader {
   void read_contacts(const Yaml& y);
   void read_contact(const Yaml& y, double friction);
   void detect(const Yaml* y);
+  void stand(const std::vector<Standing>& shapes, std::size_t first, Index object);
+  void stand_apart(ContactSearch& search);
   void collide_within(ContactSearch& search);
   void read_damping(const Yaml& root);
   void damp(const Yaml& y, Index row, Index rows);

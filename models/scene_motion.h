@@ -37,6 +37,14 @@ struct SceneMotion {
     double linear = -1, angular = -1, after = 0;  ///< [m/s, rad/s, s]; negative: not asked for
   };
 
+  /// Coefficients of the contacts of two, or of one with all others.
+  struct Between {
+    static constexpr Index any = -2;
+    Index a = any, b = any;  ///< a body, ground (the plane), any, or −3 − k: what stands, of ContactSearch::standing
+    double friction = -1, torsional = -1, rolling = -1, restitution = -1;  ///< negative: that of an entry before this one, or of the scene
+    std::string where;
+  };
+
   VectorX<double> nu;               ///< velocities at the start; empty: at rest
   std::vector<Spring> springs;
   std::vector<Motor> motors;
@@ -46,6 +54,7 @@ struct SceneMotion {
   double friction = -1;             ///< of all contacts that are found; negative: that of shapes and ground
   double restitution = 0;           ///< of all contacts
   double torsional_friction = 0, rolling_friction = 0;  ///< of all contacts: largest moment about the normal, and across it, per normal force [m]
+  std::vector<Between> between;     ///< a later one replaces what it gives
   double contact_damping = 0;       ///< R⁻¹ of the rows of contacts that are found [1/kg]
   Sleeping sleeping;
   std::map<std::string, std::string> where;  ///< key of the scene → file:line

@@ -200,6 +200,7 @@ void SceneLoader::read_robot(const Yaml& y) {
   own_damping_.resize(own_damping_.size() + scene_.model.constraints.size() - before);
   const Index root = robot.root_joint.empty() ? ground : robot.bodies.front();
   grow_q();
+  stand(robot.standing, 0, objects_ - 1);
   if (root != ground && scene_.model.bodies[z(root)].joint.type == JointType::floating) set_pose(root, options.pose);
   for (const auto& [body, values] : robot.start)
     for (std::size_t k = 0; k < values.size(); ++k) scene_.q[scene_.model.first_q[z(body)] + static_cast<Index>(k)] = values[k];
@@ -218,9 +219,10 @@ void SceneLoader::read_robot(const Yaml& y) {
 }
 
 void SceneLoader::read_box(const Yaml& y) {
-  y.keys({"name", "mass", "size", "pose", "velocity", "friction"});
+  y.keys({"name", "mass", "size", "pose", "velocity", "friction", "fixed"});
   const std::string name = new_name(y.at("name"));
-  const double mass = y.at("mass").positive(" [kg]");
+  const bool fixed = y.has("fixed") && y.at("fixed").boolean();
+  const double mass = fixed ? 1 : y.at("mass").positive(" [kg]");
   const Vector3<double> size = y.at("size").vector3(" > 0 [m]");
   if (!(size.minCoeff() > 0)) y.at("size").fail("an edge of (" + numbers_text(size) + ") is not positive", "3 full edge lengths > 0 [m]; a thin plate still has a thickness");
   Body body = box_body(mass, size);
@@ -228,9 +230,19 @@ void SceneLoader::read_box(const Yaml& y) {
   body.name = name;
   body.joint.name = name + "/base";
   if (y.has("friction")) body.shapes[0].friction = y.at("friction").non_negative("");
+  const Pose<double> pose = y.has("pose") ? y.at("pose").pose() : Pose<double>{};
+  if (fixed) {
+    if (y.has("velocity")) y.at("velocity").fail("the box is fixed", "a velocity where it moves; leave fixed or velocity out");
+    Shape shape = body.shapes[0];
+    shape.placement = pose;
+    grow_q();  // an object of no body
+    stand({{name, shape}}, 0, objects_ - 1);
+    scene_.frames.emplace(name, Frame{ground, pose});
+    return;
+  }
   const Index i = scene_.model.add(std::move(body));
   grow_q();
-  set_pose(i, y.has("pose") ? y.at("pose").pose() : Pose<double>{});
+  set_pose(i, pose);
   if (y.has("velocity")) read_velocity(i, y.at("velocity"));
   scene_.frames.emplace(name, Frame{i, {}});
 }

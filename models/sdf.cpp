@@ -90,7 +90,7 @@ void SdfBuilder::check_options() const {
 
 /// Puts a link into a body or the ground.
 void SdfBuilder::place(const SdfDocument::Link& link, const Frame& frame) {
-  bodies_.place(link.name, frame, link.shapes, link.meshes, out_, tally_);
+  bodies_.place(link.name, frame, link.shapes, link.meshes, out_);
   if (frame.body == ground) return;
   const std::string element = link.element + " <inertial>";
   if (link.inertia_asked_of_shapes)

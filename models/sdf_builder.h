@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "models/robot_bodies.h"
+#include "models/tally.h"
 #include "models/sdf_document.h"
 
 namespace delassus {

@@ -88,7 +88,6 @@ class Loader {
     check_totals();
     bodies_.add_to(model_, out_);
     add_mimics();
-    tally_.report(options_.file, findings_);
     out_.notes = std::move(findings_.notes);
     out_.warnings = std::move(findings_.warnings);
     return std::move(out_);
@@ -117,7 +116,7 @@ class Loader {
   /// Puts a link into a body (or the ground): its frame, inertia and shapes.
   void place(const std::string& link, const Frame& frame) {
     const CheckedUrdf::Link& said = checked_.links.at(link);
-    bodies_.place(link, frame, said.shapes, said.meshes, out_, tally_);
+    bodies_.place(link, frame, said.shapes, said.meshes, out_);
     const auto& inertial = urdf_->links_.at(link)->inertial;
     if (frame.body == ground || !inertial) return;
     judge_inertia(findings_, options_.file, said.inertial_place, said.inertial.mass, said.inertial.inertia);
@@ -248,7 +247,6 @@ class Loader {
   Model& model_;
   const RobotOptions& options_;
   Findings findings_;
-  Tally tally_;
   CheckedUrdf checked_;
   std::shared_ptr<urdf::ModelInterface> urdf_;
   RobotBodies bodies_;

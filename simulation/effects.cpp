@@ -124,6 +124,7 @@ Call contact_friction(const Scene& s) {
     any = above(s.ground_friction);
     for (const Body& b : s.model.bodies)
       for (const Shape& shape : b.shapes) any = any || above(shape.friction);
+    for (const Standing& x : s.motion.search.standing) any = any || above(x.shape.friction);
   }
   return any ? Call{true, "a coefficient above 0" + at(s, "contacts")} : Call{false, "no contact has a coefficient above 0"};
 }

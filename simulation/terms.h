@@ -31,7 +31,8 @@ template <class T> class Moment {
   std::vector<RowSet<T>>* rows = nullptr;
   struct Touching {
     ContactPoint point;
-    double R_inverse;  ///< [1/kg]
+    double R_inverse;                                     ///< [1/kg]
+    double torsional = -1, rolling = -1, restitution = -1;  ///< its own; negative: that of the scene
   };
   std::vector<Touching> touching;  ///< detection terms add to it
   const std::vector<std::uint8_t>* resting = nullptr;  ///< per body: 1 where it is not moved; null: all move

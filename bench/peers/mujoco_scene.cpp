@@ -77,6 +77,7 @@ struct Filter {
     if (!scene.motion.search.apart.empty()) has_not("the pairs of links that self: true leaves out");
     std::map<Index, int> bodies;
     for (const Index object : scene.motion.search.object) ++bodies[object];
+    for (const Standing& s : scene.motion.search.standing) ++bodies[s.object];
     int next = 2;
     for (const auto& [object, count] : bodies) {
       bit[object] = count == 1 ? alone : next;
@@ -84,9 +85,8 @@ struct Filter {
       if (next >= ground_bit) has_not("room for so many robots in its filter");
     }
   }
-  [[nodiscard]] std::string text(const Scene& scene, Index body) const {
-    const auto& objects = scene.motion.search.object;
-    const int own = objects.empty() ? alone : bit.at(objects[z(body)]), meets = ground_bit | (own == alone ? all : all & ~own);
+  [[nodiscard]] std::string text(Index object) const {
+    const int own = bit.empty() ? alone : bit.at(object), meets = ground_bit | (own == alone ? all : all & ~own);
     return " contype=\"" + std::to_string(own) + "\" conaffinity=\"" + std::to_string(meets) + "\"";
   }
 };
@@ -103,31 +103,35 @@ reference::MujocoMore text_of(const Scene& scene, const std::vector<Connected>& 
   const Filter filter(scene);
   std::size_t shapes = 0, meshes = 0;
   double seen = -1;
+  const auto geom = [&](const Shape& s, Index object) {
+    ++shapes;
+    const double mu = scene.motion.friction >= 0 ? scene.motion.friction : s.friction;
+    if (scene.motion.friction < 0 && mu >= 0 && seen >= 0 && mu != seen) has_not("smaller of two coefficients for a contact (it takes the larger)");
+    seen = std::max(seen, mu);
+    const Eigen::Quaterniond turned(s.placement.rotation);
+    std::string text = std::string("<geom type=\"") + types[static_cast<std::size_t>(s.kind)] + "\" pos=\"" + numbers(s.placement.translation) + "\" quat=\"" +
+                       numbers(Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z())) + "\"" + filter.text(object) + friction_text(mu);
+    if (s.kind == Shape::Kind::hull) {
+      const std::string name = "mesh" + std::to_string(meshes++);
+      out.assets += "<mesh name=\"" + name + "\" vertex=\"";
+      for (const Vector3<double>& x : *s.points) out.assets += numbers(x) + " ";
+      out.assets += "\"/>\n";
+      text += " mesh=\"" + name + "\"";
+    } else {
+      text += " size=\"" + numbers(s.size) + "\"";
+    }
+    return text + "/>\n";
+  };
+  const auto& objects = scene.motion.search.object;
   for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
     std::string& text = out.in_body.emplace_back();
     if (!scene.motion.detects) continue;
-    for (const Shape& s : scene.model.bodies[i].shapes) {
-      ++shapes;
-      const double mu = scene.motion.friction >= 0 ? scene.motion.friction : s.friction;
-      if (scene.motion.friction < 0 && mu >= 0 && seen >= 0 && mu != seen) has_not("smaller of two coefficients for a contact (it takes the larger)");
-      seen = std::max(seen, mu);
-      const Eigen::Quaterniond turned(s.placement.rotation);
-      text += std::string("<geom type=\"") + types[static_cast<std::size_t>(s.kind)] + "\" pos=\"" + numbers(s.placement.translation) + "\" quat=\"" +
-              numbers(Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z())) + "\"" + filter.text(scene, static_cast<Index>(i)) + friction_text(mu);
-      if (s.kind == Shape::Kind::hull) {
-        const std::string name = "mesh" + std::to_string(meshes++);
-        out.assets += "<mesh name=\"" + name + "\" vertex=\"";
-        for (const Vector3<double>& x : *s.points) out.assets += numbers(x) + " ";
-        out.assets += "\"/>\n";
-        text += " mesh=\"" + name + "\"";
-      } else {
-        text += " size=\"" + numbers(s.size) + "\"";
-      }
-      text += "/>\n";
-    }
+    for (const Shape& s : scene.model.bodies[i].shapes) text += geom(s, objects.empty() ? 0 : objects[i]);
   }
+  if (scene.motion.detects)
+    for (const Standing& s : scene.motion.search.standing) out.in_world += geom(s.shape, s.object);
   if (scene.motion.search.ground)
-    out.in_world = "<geom type=\"plane\" size=\"0 0 1\" priority=\"1\" pos=\"0 0 " + numbers(Eigen::Matrix<double, 1, 1>(scene.motion.search.ground_height)) + "\" contype=\"" +
+    out.in_world += "<geom type=\"plane\" size=\"0 0 1\" priority=\"1\" pos=\"0 0 " + numbers(Eigen::Matrix<double, 1, 1>(scene.motion.search.ground_height)) + "\" contype=\"" +
                    std::to_string(Filter::ground_bit) + "\" conaffinity=\"0\"" + friction_text(scene.motion.friction >= 0 ? scene.motion.friction : scene.ground_friction) + "/>\n";
   for (const Connected& c : connected) {
     const bool turned = c.a.body == ground;

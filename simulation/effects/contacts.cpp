@@ -45,7 +45,7 @@ Detection<T>::Detection(const Scene& scene)
     : search_(scene.motion.search), friction_(scene.motion.friction), ground_friction_(scene.ground_friction), R_inverse_(scene.motion.contact_damping) {
   for (const Body& b : scene.model.bodies) reach_.push_back(reach_of(b));
   speeds_.resize(scene.model.bodies.size());
-  search_.hulls = hull_surfaces(scene.model);
+  search_.hulls = hull_surfaces(scene.model, search_.standing);
 }
 
 /// As far as each body comes in two steps: two of them towards each other in one.
@@ -69,7 +69,7 @@ template <class T> void Detection<T>::detect(Moment<T>& now) {
   search_.resting = now.resting;
   notes_.clear();
   for (ContactPoint p : find_contacts(*now.model, at, search_, notes_)) {
-    if (p.friction < 0 || (p.other == ground && ground_friction_ >= 0)) p.friction = ground_friction_;
+    if (p.friction < 0 || (p.other == ground && p.standing < 0 && ground_friction_ >= 0)) p.friction = ground_friction_;
     if (friction_ >= 0) p.friction = friction_;
     now.touching.push_back({p, R_inverse_});
   }
@@ -106,14 +106,12 @@ template <class T> void Contacts<T>::detect(Moment<T>& now) {
 template <class T> void Contacts<T>::add_rows(Moment<T>& now) {
   const Poses<T>& at = now.poses();
   const auto reference = [&](Index body) { return at.reference[static_cast<std::size_t>(at.tree[static_cast<std::size_t>(body)])]; };
-  Index feature = 0;
-  const RowSet<T>* last = nullptr;
-  for (const auto& [p, R_inverse] : now.touching) {
+  for (const auto& touching : now.touching) {
+    const ContactPoint& p = touching.point;
     RowSet<T> s;
     s.kind = RowSet<T>::Kind::contact;
     s.body = p.body, s.other = p.other;
-    feature = last != nullptr && last->body == p.body && last->other == p.other ? feature + 1 : 0;
-    s.identity = {0, p.body, p.other, feature};
+    s.identity = {0, p.body, p.other, p.feature};
     s.point = p.point.template cast<T>();
     s.point_of_other = s.point;
     if (p.other != ground) s.point_of_other += reference(p.body) - reference(p.other);
@@ -122,9 +120,8 @@ template <class T> void Contacts<T>::add_rows(Moment<T>& now) {
     s.gap = T(p.gap);
     s.friction = T(p.friction);
     s.target = target_of_gap(s.gap, now.h);
-    s.R_inverse = T(R_inverse);
+    s.R_inverse = T(touching.R_inverse);
     now.rows->push_back(s);
-    last = &now.rows->back();
   }
 }
 
