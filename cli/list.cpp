@@ -65,6 +65,8 @@ json scenes_json() {
   json out = json::array();
   for (const std::string& s : scene_names()) out.push_back(scene_row(s));
   out.push_back({{"name", "swimmer:N"}, {"summary", "chain of N links in the plane, two contacts per link; N ≥ 1"}});
+  out.push_back({{"name", "stacks:N"}, {"summary", "N boxes that settle in stacks of five, for simulate; N ≥ 1"}});
+  out.push_back({{"name", "wall:N"}, {"summary", "N boxes that settle in a wall of ten courses, for simulate; N ≥ 1"}});
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
+#include "models/box_piles.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
 #include "models/yaml.h"
@@ -50,6 +51,13 @@ bool is_robot_s(const std::string& file) {
   return begins_with_an_element(file) || end == ".urdf" || end == ".sdf" || end == ".xml";
 }
 
+/// Scenes of any size, by name:N.
+struct Sized {
+  std::string_view name, of;
+  Scene (*make)(Index);
+};
+constexpr Sized sized[] = {{"swimmer", "links", swimmer}, {"stacks", "boxes", stacks}, {"wall", "boxes", wall}};
+
 }  // namespace
 
 std::vector<std::string> scene_names() {
@@ -68,17 +76,19 @@ Scene open_scene(const std::string& name, const SceneOptions& options) {
   if (file && is_robot_s(name)) return load_robot(name, options);
   if (options.base) throw ModelError("", "--base", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write base: in the robot's entry");
   if (options.armature) throw ModelError("", "--armature", in_quotes(name) + " is no robot's file", "a robot's file; in scenes write armature: in the robot's entry");
-  if (name.rfind("swimmer:", 0) == 0) {
-    const auto links = finite_number(std::string_view(name).substr(8));
-    if (!links || *links < 1 || *links > 1e9 || *links != std::floor(*links))
-      throw ModelError("", "scene " + in_quotes(name), "has no number of links", "swimmer:N with a whole number N >= 1; swimmer:10 has ten links");
-    return swimmer(static_cast<Index>(*links));
+  for (const Sized& s : sized) {
+    const std::string begins(s.name), of(s.of);
+    if (name.rfind(begins + ":", 0) != 0) continue;
+    const auto size = finite_number(std::string_view(name).substr(begins.size() + 1));
+    if (!size || *size < 1 || *size > 1e9 || *size != std::floor(*size))
+      throw ModelError("", "scene " + in_quotes(name), "has no number of " + of, begins + ":N with a whole number N >= 1; " + begins + ":10 has ten " + of);
+    return s.make(static_cast<Index>(*size));
   }
   const bool path = name.find('/') != std::string::npos || fs::path(name).extension() == ".yaml";
   if (path || file) return load_scene(name, options);
   const fs::path folder = scene_folder(), stem = folder / (name + ".yaml");
   if (!name.empty() && !folder.empty() && fs::is_regular_file(stem, error)) return load_scene(stem.string(), options);
-  std::string known = "a .yaml file, a robot's file, swimmer:N";
+  std::string known = "a .yaml file, a robot's file, swimmer:N, stacks:N, wall:N";
   for (const std::string& s : scene_names()) known += ", " + s;
   throw ModelError("", "scene " + in_quotes(name), "does not exist", did_you_mean(name, scene_names()) + known + "; check the path");
 }

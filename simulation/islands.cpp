@@ -42,31 +42,39 @@ Islands::Islands(const Structure& s) {
   for (const auto& c : s.joint_constraints) std::fill_n(tree_of_row_.begin() + c.row, c.rows, tree_of(c.body));
   flatten(loops_);
   island_ = loops_;
+  own_.resize(root_of_.size());
+  for (Index i = 0; i < s.bodies(); ++i) own_[z(tree_of(i))].bodies.push_back(i);
+  for (std::size_t k = 0; k < s.link_constraints.size(); ++k) {
+    const auto& c = s.link_constraints[k];
+    own_[c.links.empty() ? 0 : z(tree_of(c.links[0].body))].rows.push_back({c.row, true, k});
+  }
+  for (std::size_t k = 0; k < s.joint_constraints.size(); ++k) own_[z(tree_of(s.joint_constraints[k].body))].rows.push_back({s.joint_constraints[k].row, false, k});
 }
 
 template <class T> Part<T>::Part(const Structure& whole, const Islands& islands, const std::vector<Index>& trees) {
-  const auto ours = [&](Index body) { return std::binary_search(trees.begin(), trees.end(), islands.tree_of(body)); };
+  std::vector<Islands::Own::Rows> constraints;  // of both kinds in the order of their rows
+  for (const Index t : trees) {
+    const Islands::Own& own_of = islands.of(t);
+    bodies.insert(bodies.end(), own_of.bodies.begin(), own_of.bodies.end());
+    constraints.insert(constraints.end(), own_of.rows.begin(), own_of.rows.end());
+  }
+  std::sort(bodies.begin(), bodies.end());
+  std::sort(constraints.begin(), constraints.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
   auto made = std::make_shared<Structure>();
-  for (Index i = 0; i < whole.bodies(); ++i) {
-    if (!ours(i)) continue;
-    bodies.push_back(i);
+  for (const Index i : bodies) {
     for (Index k = whole.first_dof[i]; k < whole.first_dof[i + 1]; ++k) dofs.push_back(k);
     made->add_body(whole.parent[i] == ground ? ground : own(whole.parent[i]), whole.dofs(i));
   }
-  std::size_t link = 0, joint = 0;  // constraints of both kinds in the order of their rows
-  while (link < whole.link_constraints.size() || joint < whole.joint_constraints.size()) {
-    const bool first = joint == whole.joint_constraints.size() || (link < whole.link_constraints.size() && whole.link_constraints[link].row < whole.joint_constraints[joint].row);
-    if (first) {
-      const auto& c = whole.link_constraints[link++];
-      if (c.links.empty() ? trees[0] != 0 : !ours(c.links[0].body)) continue;  // rows of the world alone go to the first
+  for (const auto& e : constraints) {
+    if (e.link) {
+      const auto& c = whole.link_constraints[e.which];
       std::vector<Index> on;
       for (const auto& l : c.links) on.push_back(own(l.body));
       const auto& to = made->link_constraints[z(made->add_link_constraint(c.rows, on))];
       for (std::size_t k = 0; k < c.links.size(); ++k) K_.push_back({to.links[k].first, c.links[k].first, c.rows});
       for (Index r = 0; r < c.rows; ++r) rows.push_back(c.row + r);
     } else {
-      const auto& c = whole.joint_constraints[joint++];
-      if (!ours(c.body)) continue;
+      const auto& c = whole.joint_constraints[e.which];
       const auto& to = made->joint_constraints[z(made->add_joint_constraint(c.rows, own(c.body)))];
       joint_K_.push_back({to.first, c.first, c.rows * whole.dofs(c.body)});
       for (Index r = 0; r < c.rows; ++r) rows.push_back(c.row + r);
