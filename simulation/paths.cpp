@@ -70,9 +70,16 @@ template <class T> Report EquationsPath<T>::correct(const VectorX<T>& gap, Vecto
   if (!taken_.ok()) return taken_;
   push_.setConstant(T(0));
   wanted_.col(0) = -gap;
-  const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{accuracy_}, work_);
-  d = motion_.col(0);
-  return report;
+  if (!yields_) {
+    const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{accuracy_}, work_);
+    d = motion_.col(0);
+    if (report.status != Status::inconsistent) return report;
+    if (!yielding_) yielding_ = std::make_unique<Yielding<T>>(numbers_->structure);
+    const Report updated = yielding_->update(*numbers_, damping_);
+    if (!updated.ok()) return updated;
+    yields_ = true;
+  }
+  return yielding_->displacement(gap, d);
 }
 
 template class FreePath<double>;

@@ -15,6 +15,7 @@
 #include "algorithms/operators/operators.h"
 #include "simulation/contact_problem.h"
 #include "simulation/terms.h"
+#include "simulation/yielding.h"
 
 namespace delassus::simulation {
 
@@ -67,17 +68,21 @@ template <class T> class EquationsPath final : public Path<T> {
   EquationsPath(std::shared_ptr<const Structure> structure, Damping<T> damping, const std::string& op, double accuracy);
   [[nodiscard]] std::string_view name() const override { return "equations"; }
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
-  [[nodiscard]] Index bytes() const override { return operator_->bytes() + work_.size() * static_cast<Index>(sizeof(T)); }
+  [[nodiscard]] Index bytes() const override { return operator_->bytes() + (yielding_ ? yielding_->bytes() : 0) + work_.size() * static_cast<Index>(sizeof(T)); }
 
   /// Numbers for `correct`, after a step that was solved by others.
-  void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_); }
-  /// The shortest change d of the joints, in the norm of M̂, with J d + R⁻¹μ = −gap, by the factor of the last step.
+  void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_), numbers_ = &problem, yields_ = false; }
+  /// The shortest change d of the joints, in the norm of M̂, with J d + R⁻¹μ = −gap, by the factor of the last step; rows that
+  /// contradict each other give way (yielding.h). The problem of `take` must live until then.
   Report correct(const VectorX<T>& gap, VectorX<T>& d);
 
  private:
   std::unique_ptr<Operator<T>> operator_;
   Damping<T> damping_;
   Report taken_;
+  const Problem<T>* numbers_ = nullptr;
+  std::unique_ptr<Yielding<T>> yielding_;
+  bool yields_ = false;  // since the last take
   double accuracy_;
   Workspace<T> work_;
   TreeOperators<T> tree_;
