@@ -5,6 +5,7 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
+#include "models/between.h"
 #include "models/mesh.h"
 #include "models/scene_loader.h"
 
@@ -70,6 +71,40 @@ void SceneLoader::collide_within(ContactSearch& search) {
     scene_.notes.push_back(std::to_string(touching) + " pairs of links of one robot touch at the given pose and are not tested against each other");
 }
 
+/// A link, a box, or ground, as contacts know them: a fixed link has as many numbers as shapes.
+std::vector<Index> SceneLoader::touched(const Yaml& y) const {
+  const End end = end_of(y);
+  if (end.frame.body != ground) return {end.frame.body};
+  if (end.name == "ground") return {ground};
+  std::vector<Index> out;
+  const std::vector<Standing>& standing = scene_.motion.search.standing;
+  for (std::size_t k = 0; k < standing.size(); ++k)
+    if (standing[k].name == end.name) out.push_back(-3 - static_cast<Index>(k));
+  return out;
+}
+
+/// {of, to, friction, …}: coefficients of the contacts of two, or of one with all.
+void SceneLoader::read_between(const Yaml& y) {
+  y.keys({"of", "to", "friction", "torsional_friction", "rolling_friction", "restitution"});
+  SceneMotion::Between b;
+  b.where = y.file_and_line();
+  if (y.has("friction")) b.friction = y.at("friction").non_negative("");
+  if (y.has("torsional_friction")) b.torsional = y.at("torsional_friction").non_negative(" [m]");
+  if (y.has("rolling_friction")) b.rolling = y.at("rolling_friction").non_negative(" [m]");
+  if (y.has("restitution")) b.restitution = restitution(y.at("restitution"));
+  for (const Index a : touched(y.at("of")))
+    for (const Index other : y.has("to") ? touched(y.at("to")) : std::vector<Index>{SceneMotion::Between::any}) {
+      b.a = a, b.b = other;
+      scene_.motion.between.push_back(b);
+    }
+}
+
+double SceneLoader::restitution(const Yaml& y) {
+  const double e = y.non_negative("");
+  if (e > 1) y.fail(number_text(e) + " is above 1", "a number from 0 to 1; 1 bounces back with the speed it came");
+  return e;
+}
+
 void SceneLoader::detect(const Yaml* y) {
   ContactSearch& search = scene_.motion.search;
   search.ground = scene_.has_ground;
@@ -79,10 +114,7 @@ void SceneLoader::detect(const Yaml* y) {
   if (y != nullptr && y->has("margin")) search.margin = y->at("margin").non_negative(" [m]");
   const bool within = y != nullptr && y->has("self") && y->at("self").boolean();
   if (y != nullptr && y->has("friction")) scene_.motion.friction = y->at("friction").non_negative("");
-  if (y != nullptr && y->has("restitution")) {
-    scene_.motion.restitution = y->at("restitution").non_negative("");
-    if (scene_.motion.restitution > 1) y->at("restitution").fail(number_text(scene_.motion.restitution) + " is above 1", "a number from 0 to 1; 1 bounces back with the speed it came");
-  }
+  if (y != nullptr && y->has("restitution")) scene_.motion.restitution = restitution(y->at("restitution"));
   if (y != nullptr && y->has("torsional_friction")) scene_.motion.torsional_friction = y->at("torsional_friction").non_negative(" [m]");
   if (y != nullptr && y->has("rolling_friction")) scene_.motion.rolling_friction = y->at("rolling_friction").non_negative(" [m]");
   Index vertices = 64;
@@ -100,6 +132,8 @@ void SceneLoader::detect(const Yaml* y) {
   scene_.warnings.insert(scene_.warnings.end(), found.warnings.begin(), found.warnings.end());
   if (within) collide_within(search);
   else stand_apart(search);
+  if (y != nullptr && y->has("between"))
+    for (const Yaml& item : y->at("between").list("a list of {of, to, friction, torsional_friction, rolling_friction, restitution}")) read_between(item);
   for (const ContactPoint& p : find_contacts(scene_.model, poses_, search, scene_.notes)) {
     const auto i = static_cast<std::size_t>(p.body);
     Constraint c;
@@ -111,17 +145,18 @@ void SceneLoader::detect(const Yaml* y) {
     c.friction = p.friction >= 0 ? p.friction : scene_.ground_friction;
     if (p.other == ground && p.standing < 0 && scene_.ground_friction >= 0) c.friction = scene_.ground_friction;
     if (y != nullptr && y->has("friction")) c.friction = y->at("friction").non_negative("");
+    if (const double own = own_coefficients(scene_.motion.between, p).friction; own >= 0) c.friction = own;
     scene_.model.constraints.push_back(std::move(c));
     own_damping_.push_back(y != nullptr && y->has("damping") ? std::optional<Yaml>(y->at("damping")) : std::nullopt);
   }
 }
 
 void SceneLoader::read_contacts(const Yaml& y) {
-  const std::string accepted = "detect, {detect: true, self, margin, hull_vertices, friction, torsional_friction, rolling_friction, restitution, damping}, or a list of {of, at, to, normal, friction, damping}";
+  const std::string accepted = "detect, {detect: true, self, margin, hull_vertices, friction, torsional_friction, rolling_friction, restitution, between, damping}, or a list of {of, at, to, normal, friction, damping}";
   if (y.is_list()) {
     for (const Yaml& item : y.list(accepted)) read_contact(item, scene_.ground_friction);
   } else if (y.is_map()) {
-    y.keys({"detect", "self", "margin", "hull_vertices", "friction", "torsional_friction", "rolling_friction", "restitution", "damping"});
+    y.keys({"detect", "self", "margin", "hull_vertices", "friction", "torsional_friction", "rolling_friction", "restitution", "between", "damping"});
     if (y.at("detect").boolean()) detect(&y);
   } else if (y.text(accepted) == "detect") {
     detect(nullptr);

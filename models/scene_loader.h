@@ -81,6 +81,9 @@ class SceneLoader {
   void stand(const std::vector<Standing>& shapes, std::size_t first, Index object);
   void stand_apart(ContactSearch& search);
   void collide_within(ContactSearch& search);
+  void read_between(const Yaml& y);
+  [[nodiscard]] std::vector<Index> touched(const Yaml& y) const;
+  [[nodiscard]] static double restitution(const Yaml& y);
   void read_damping(const Yaml& root);
   void damp(const Yaml& y, Index row, Index rows);
 

@@ -111,6 +111,11 @@ Call contacts(const Scene& s) {
   const auto n = std::count_if(s.model.constraints.begin(), s.model.constraints.end(), [](const Constraint& c) { return c.kind == Kind::contact; });
   return {true, counted(static_cast<std::size_t>(n), "listed contact") + at(s, "contacts")};
 }
+/// The largest that some contact may have: the scene's, and those of pairs.
+double largest(const Scene& s, double value, double SceneMotion::Between::*own) {
+  for (const auto& e : s.motion.between) value = std::max(value, e.*own);
+  return value;
+}
 /// A coefficient above 0 that a contact may have.
 Call contact_friction(const Scene& s) {
   if (!contacts(s).called) return {false, "no contacts"};
@@ -119,9 +124,9 @@ Call contact_friction(const Scene& s) {
   if (!s.motion.detects) {
     for (const Constraint& c : s.model.constraints) any = any || (c.kind == Kind::contact && above(c.friction));
   } else if (s.motion.friction >= 0) {
-    any = above(s.motion.friction);
+    any = above(largest(s, s.motion.friction, &SceneMotion::Between::friction));
   } else {
-    any = above(s.ground_friction);
+    any = above(largest(s, s.ground_friction, &SceneMotion::Between::friction));
     for (const Body& b : s.model.bodies)
       for (const Shape& shape : b.shapes) any = any || above(shape.friction);
     for (const Standing& x : s.motion.search.standing) any = any || above(x.shape.friction);
@@ -133,9 +138,9 @@ Call by_contacts(const Scene& s, double value, const char* noun, const char* uni
   if (!(value > 0)) return {false, std::string("no ") + noun + " above 0"};
   return {true, std::string(noun) + " is " + number_text(value) + unit + at(s, "contacts")};
 }
-Call torsional_friction(const Scene& s) { return by_contacts(s, s.motion.torsional_friction, "torsional friction", " m"); }
-Call rolling_friction(const Scene& s) { return by_contacts(s, s.motion.rolling_friction, "rolling friction", " m"); }
-Call restitution(const Scene& s) { return by_contacts(s, s.motion.restitution, "restitution", ""); }
+Call torsional_friction(const Scene& s) { return by_contacts(s, largest(s, s.motion.torsional_friction, &SceneMotion::Between::torsional), "torsional friction", " m"); }
+Call rolling_friction(const Scene& s) { return by_contacts(s, largest(s, s.motion.rolling_friction, &SceneMotion::Between::rolling), "rolling friction", " m"); }
+Call restitution(const Scene& s) { return by_contacts(s, largest(s, s.motion.restitution, &SceneMotion::Between::restitution), "restitution", ""); }
 Call sleeping(const Scene& s) {
   const auto& l = s.motion.sleeping;
   if (l.linear < 0) return {false, "the scene does not ask for sleeping"};

@@ -64,6 +64,7 @@ void check_effects(const Scene& scene) {
   const SceneMotion& s = scene.motion;
   if (s.restitution > 0) has_not("coefficient of restitution");
   if (s.torsional_friction > 0 || s.rolling_friction > 0) has_not("torsional and rolling friction in one cone with sliding, as ours");
+  if (!s.between.empty()) has_not("coefficients of two bodies alone, as ours");
   if (s.sleeping.linear >= 0) has_not("sleep");
   if (!scene.damping.blocks.empty()) has_not("damping in blocks");
 }

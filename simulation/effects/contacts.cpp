@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "algorithms/kit/counted.h"
+#include "models/between.h"
 
 namespace delassus::simulation {
 namespace {
@@ -42,7 +43,7 @@ bool has_listed_contacts(const Scene& scene) {
 
 template <class T>
 Detection<T>::Detection(const Scene& scene)
-    : search_(scene.motion.search), friction_(scene.motion.friction), ground_friction_(scene.ground_friction), R_inverse_(scene.motion.contact_damping) {
+    : search_(scene.motion.search), friction_(scene.motion.friction), ground_friction_(scene.ground_friction), R_inverse_(scene.motion.contact_damping), between_(scene.motion.between) {
   for (const Body& b : scene.model.bodies) reach_.push_back(reach_of(b));
   speeds_.resize(scene.model.bodies.size());
   search_.hulls = hull_surfaces(scene.model, search_.standing);
@@ -71,7 +72,13 @@ template <class T> void Detection<T>::detect(Moment<T>& now) {
   for (ContactPoint p : find_contacts(*now.model, at, search_, notes_)) {
     if (p.friction < 0 || (p.other == ground && p.standing < 0 && ground_friction_ >= 0)) p.friction = ground_friction_;
     if (friction_ >= 0) p.friction = friction_;
-    now.touching.push_back({p, R_inverse_});
+    if (between_.empty()) {
+      now.touching.push_back({p, R_inverse_});
+      continue;
+    }
+    const auto own = own_coefficients(between_, p);
+    if (own.friction >= 0) p.friction = own.friction;
+    now.touching.push_back({p, R_inverse_, own.torsional, own.rolling, own.restitution});
   }
 }
 
@@ -132,12 +139,16 @@ template <class T> void ContactFriction<T>::add_rows(Moment<T>& now) {
 
 template <class T> void Restitution<T>::add_rows(Moment<T>& now) {
   const VectorX<T>& nu = now.state->nu;
+  auto touching = now.touching.begin();  // a row set each, in this order
   for (RowSet<T>& s : *now.rows) {
     if (s.kind != RowSet<T>::Kind::contact) continue;
+    const double own = (touching++)->restitution;
+    const T e = own >= 0 ? T(own) : e_;
+    if (!(e > T(0))) continue;
     Vector3<T> v = velocity_at(*now.problem, nu, s.body, s.point);
     if (s.other != ground) v -= velocity_at(*now.problem, nu, s.other, s.point_of_other);
     const T approach = Vector3<T>(s.axes.col(0)).dot(v);
-    if (approach < T(-bounce_speed) && s.gap + now.h * approach <= T(0)) s.target = std::max(s.target, T(-e_ * approach));
+    if (approach < T(-bounce_speed) && s.gap + now.h * approach <= T(0)) s.target = std::max(s.target, T(-e * approach));
   }
 }
 

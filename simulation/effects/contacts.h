@@ -30,6 +30,7 @@ template <class T> class Detection final : public Effect, public DetectionTerm<T
   void look_ahead(Moment<T>& now, const Poses<double>& at);
   ContactSearch search_;
   double friction_, ground_friction_, R_inverse_;
+  std::vector<SceneMotion::Between> between_;
   std::vector<double> reach_;            // per body: of its shapes from its origin
   std::vector<Vector6<double>> speeds_;
   std::vector<std::string> notes_;
