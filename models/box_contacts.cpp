@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "models/segments.h"
+
 namespace delassus {
 namespace {
 
@@ -112,7 +114,7 @@ std::vector<ShapeContact> face_face(const Face& reference, const Face& incident,
   return out;
 }
 
-/// The point midway between the two supporting edges.
+/// The point midway between the two supporting edges, where they are closest.
 ShapeContact edge_edge(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
   auto edge = [](const PlacedBox& box, const V3& n, V3& direction) {
     const V3 local = box.placement.rotation.transpose() * n;
@@ -120,14 +122,12 @@ ShapeContact edge_edge(const PlacedBox& a, const PlacedBox& b, const Axis& axis)
     local.cwiseAbs().minCoeff(&along);
     V3 corner = local.unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; }).cwiseProduct(box.half);
     corner[along] = 0;
-    direction = box.placement.rotation.col(along);
+    direction = box.half[along] * box.placement.rotation.col(along);
     return box.placement * corner;
   };
   V3 u, v;
   const V3 p = edge(a, -axis.n, u), q = edge(b, axis.n, v);
-  const double c = u.dot(v), denominator = 1 - c * c;
-  const V3 d = q - p;
-  const double s = denominator > 0 ? (d.dot(u) - c * d.dot(v)) / denominator : 0, t = c * s - d.dot(v);
+  const auto [s, t] = closest_on_segments(p, u, q, v);
   return {(p + s * u + q + t * v) / 2, axis.n, axis.separation};
 }
 

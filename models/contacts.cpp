@@ -13,6 +13,7 @@
 #include "models/farthest.h"
 #include "models/hull.h"
 #include "models/near_pairs.h"
+#include "models/segments.h"
 
 namespace delassus {
 
@@ -143,19 +144,9 @@ V3 half_axis(const Placed& p) {
   return p.shape->kind == Shape::Kind::capsule ? V3(p.shape->size[1] * p.pose.rotation.col(2)) : V3::Zero();
 }
 
-/// Closest points of the segments p ± u and q ± v, as parameters in [−1, 1].
-std::pair<double, double> closest(const V3& p, const V3& u, const V3& q, const V3& v) {
-  const V3 d = q - p;
-  const double a = u.squaredNorm(), b = u.dot(v), c = v.squaredNorm(), denominator = a * c - b * b;
-  double s = denominator > 1e-12 * a * c ? std::clamp((d.dot(u) * c - b * d.dot(v)) / denominator, -1.0, 1.0) : 0;
-  const double t = c > 0 ? std::clamp((s * b - d.dot(v)) / c, -1.0, 1.0) : 0;
-  if (a > 0) s = std::clamp((d.dot(u) + t * b) / a, -1.0, 1.0);
-  return {s, t};
-}
-
 std::vector<ShapeContact> round_round(const Placed& a, const Placed& b, const V3& shift) {
   const V3 u = half_axis(a), v = half_axis(b), q0 = b.pose.translation + shift;
-  const auto [s, t] = closest(a.pose.translation, u, q0, v);
+  const auto [s, t] = closest_on_segments(a.pose.translation, u, q0, v);
   const V3 p = a.pose.translation + s * u, q = q0 + t * v, d = p - q;
   const double distance = d.norm(), gap = distance - a.shape->size[0] - b.shape->size[0];
   const V3 n = distance > 0 ? V3(d / distance) : V3(0, 0, 1);

@@ -8,6 +8,7 @@
 #include "models/convex_axis.h"
 #include "models/convex_face.h"
 #include "models/farthest.h"
+#include "models/segments.h"
 
 namespace delassus {
 namespace {
@@ -26,9 +27,9 @@ struct Facing {
 
 /// Closest points of two edges that cross.
 ShapeContact crossing(const Facing& f, const ConvexFace& a, const ConvexFace& b) {
-  const V3 p = a.corners[0], q = b.corners[0], u = a.corners[1] - p, v = b.corners[1] - q, w = u.cross(v), d = q - p;
-  const auto on = [&](const V3& other) { return std::clamp(d.cross(other).dot(w) / w.squaredNorm(), 0.0, 1.0); };
-  return f.contact(p + on(v) * u, q + on(u) * v);
+  const V3 p = (a.corners[0] + a.corners[1]) / 2, q = (b.corners[0] + b.corners[1]) / 2, u = a.corners[1] - p, v = b.corners[1] - q;
+  const auto [s, t] = closest_on_segments(p, u, q, v);
+  return f.contact(p + s * u, q + t * v);
 }
 
 /// One point, at the gap of the pair: where two edges across n cross, else at a farthest point of one shape.

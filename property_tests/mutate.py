@@ -50,13 +50,13 @@ FILES = {
 
 # Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
 WAY_IN = {
-    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp"], "SelfContacts BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts ZeroSize SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp", "segments.cpp"], "SelfContacts Standing Segments BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts ZeroSize SceneLaws SceneFile Scenes"),
     "near_pairs.cpp": "NearPairs ContactLaws",
     **dict.fromkeys(["convex_shape.cpp", "convex_axis.cpp", "closest_points.cpp", "rim_axis.cpp", "convex_face.cpp", "convex_contacts.cpp"], "ConvexContacts ContactLaws"),
     **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
-                    "SceneLaws SelfContacts SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
+                    "SceneLaws SelfContacts Standing SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
     **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
-                     "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field Formats SceneLaws Scenes RobotRefusals"),
+                     "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field Formats SceneLaws Scenes RobotRefusals Standing"),
     **dict.fromkeys(["sdf.cpp", "sdf_joints.cpp", "sdf_document.cpp", "sdf_said.cpp", "sdf_text.cpp", "sdf_counts.cpp"], "Sdf Formats RobotRefusals"),
     "scene_files.cpp": "SceneFile Scenes JointLimits Mjcf",
     **dict.fromkeys(["mjcf.cpp", "mjcf_shapes.cpp", "mjcf_equalities.cpp", "mjcf_compile.cpp", "mjcf_xml.cpp", "mjcf_said.cpp", "mjcf_newer.cpp"], "Mjcf Formats RobotRefusals"),
