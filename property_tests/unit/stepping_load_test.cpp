@@ -8,6 +8,7 @@
 #include "property_tests/settling.h"
 #include "property_tests/unit/stepping_scenes.h"
 #include "simulation/islands.h"
+#include "simulation/solvers.h"
 
 namespace delassus {
 namespace laws {
@@ -57,6 +58,29 @@ TEST(Load, a_wall_needs_no_more_iterations_for_its_length) {
   EXPECT_EQ(few.islands, 1);
   EXPECT_EQ(many.islands, 1);
   EXPECT_LT(many.iterations_at_end, 2 * few.iterations_at_end);
+}
+
+// Whether a solver takes a problem is asked in every step.
+TEST(Load, what_is_refused_is_known_in_the_time_of_the_rows) {
+  const auto time_of = [](Index contacts) {
+    auto s = std::make_shared<Structure>();
+    for (Index i = 0; i < contacts; ++i) s->add_body(ground, 6);
+    for (Index i = 0; i < contacts; ++i) s->add_link_constraint(3, {i});
+    ContactProblem<double> p;
+    p.mechanism = std::make_shared<const Problem<double>>(s);
+    p.resize(3 * contacts);
+    for (Index i = 0; i < contacts; ++i) append_contact(p, 0.5);
+    const auto solver = find_solver("proximal").make();
+    double best = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 5; ++k) {
+      const double start = processor_time();
+      EXPECT_EQ(solver->refusal(p), "");
+      best = std::min(best, processor_time() - start);
+    }
+    return best;
+  };
+  const double few = time_of(1000), many = time_of(8000);
+  EXPECT_LT(many / few, 24) << few << " s and " << many << " s";
 }
 
 // Islands are made in the time of their own bodies: eight times as many take eight times as long, not sixty-four.

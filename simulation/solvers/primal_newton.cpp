@@ -1,13 +1,14 @@
 #include "simulation/solvers/primal_newton.h"
 
+#include <algorithm>
+
 namespace delassus::simulation {
 
 template <class T> std::string PrimalNewton<T>::refusal(const ContactProblem<T>& p) {
   if (!p.mechanism) return "the problem is a given matrix G; the motion of a mechanism is needed";
-  const auto within = [](const auto& constraints, const ConeRows& c) {
-    for (const auto& e : constraints)
-      if (e.row <= c.row && c.row + c.rows <= e.row + e.rows) return true;
-    return false;
+  const auto within = [](const auto& constraints, const ConeRows& c) {  // their rows ascend
+    const auto next = std::upper_bound(constraints.begin(), constraints.end(), c.row, [](Index row, const auto& e) { return row < e.row; });
+    return next != constraints.begin() && c.row + c.rows <= std::prev(next)->row + std::prev(next)->rows;
   };
   for (std::size_t e = 0; e < p.groups.size(); ++e) {
     const ConeRows& c = p.groups[e];
