@@ -18,8 +18,13 @@ Constrained<T>::Constrained(const Model& model, Mechanism<T>& mechanism, const s
   wanted_ = lambda_ = gap_ = gap_then_ = MatrixX<T>::Constant(mechanism.structure()->rows, 1, T(0));
 }
 
-template <class T> Report Constrained<T>::solve(const MatrixX<T>& push, const MatrixX<T>& wanted) {
-  return operator_->solve_kkt(push, wanted, change_, lambda_, Accuracy{accuracy_}, work_);
+/// Of the problem of the last update of the operator; rows that contradict each other give way.
+template <class T> Report Constrained<T>::solve(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted) {
+  Report report = operator_->solve_kkt(push, wanted, change_, lambda_, Accuracy{accuracy_}, work_);
+  if (report.status != Status::inconsistent) return report;
+  if (!yielding_) yielding_ = std::make_unique<Yielding<T>>(problem.structure);
+  report = yielding_->update(problem, hard_);
+  return report.ok() ? yielding_->solve(push, wanted, yielding_points, Accuracy{accuracy_}, change_, lambda_) : report;
 }
 
 template <class T> Report Constrained<T>::accelerations(Moment<T>& now, VectorX<T>& out, VectorX<T>& lambda) {
@@ -37,7 +42,7 @@ template <class T> Report Constrained<T>::accelerations(Moment<T>& now, VectorX<
     wanted_ += gap_;
   }
   push_.col(0) = now.weight * *now.force;
-  report = solve(push_, wanted_);
+  report = solve(*now.problem, push_, wanted_);
   out = change_.col(0);
   lambda = lambda_.col(0);
   using std::isfinite;
@@ -71,7 +76,7 @@ template <class T> Report Constrained<T>::project(Moment<T>& now, State<T>& next
   push_.setConstant(T(0));
   for (int k = 0; report.ok() && k < 5 && open > T(closed); ++k) {
     wanted_ = -gap_;
-    report = solve(push_, wanted_);
+    report = solve(problem, push_, wanted_);
     if (!report.ok()) break;
     q_ = next.q;
     d_ = change_.col(0);
@@ -96,7 +101,7 @@ template <class T> Report Constrained<T>::project(Moment<T>& now, State<T>& next
   nu_.col(0) = next.nu;
   tree_.J(nu_, wanted_);
   wanted_ = -wanted_;
-  report = solve(push_, wanted_);
+  report = solve(problem, push_, wanted_);
   next.nu += change_.col(0);
   return report;
 }

@@ -13,12 +13,14 @@
 #include "algorithms/mechanism/motion.h"
 #include "algorithms/operators/operators.h"
 #include "simulation/terms.h"
+#include "simulation/yielding.h"
 
 namespace delassus::simulation {
 
 template <class T> class Constrained {
  public:
   static constexpr double closed = 1e-12;  ///< [m, rad]
+  static constexpr int yielding_points = 4;  ///< rows that are held to 1e-3 of their diagonal by one are held to rounding
 
   /// `model` and `mechanism` with the rows; they must outlive this. @throws ModelError for an operator that does not exist.
   Constrained(const Model& model, Mechanism<T>& mechanism, const std::string& op, double accuracy);
@@ -29,13 +31,14 @@ template <class T> class Constrained {
 
  private:
   T gap_at(const VectorX<T>& q, MatrixX<T>& gap);
-  Report solve(const MatrixX<T>& push, const MatrixX<T>& wanted);
+  Report solve(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted);
 
   const Model* model_;
   Mechanism<T>* mechanism_;
   Advance<T> advance_;
   Motion<T> motion_;
   std::unique_ptr<Operator<T>> operator_;
+  std::unique_ptr<Yielding<T>> yielding_;  // where rows contradict each other
   Damping<T> hard_;
   double accuracy_;
   Workspace<T> work_;

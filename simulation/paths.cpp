@@ -79,7 +79,9 @@ template <class T> Report EquationsPath<T>::correct(const VectorX<T>& gap, Vecto
     if (!updated.ok()) return updated;
     yields_ = true;
   }
-  return yielding_->displacement(gap, d);
+  const Report report = yielding_->solve(push_, wanted_, 1, Accuracy{accuracy_}, motion_, rows_);
+  d = motion_.col(0);
+  return report;
 }
 
 template class FreePath<double>;
