@@ -37,9 +37,9 @@ template <class T> VectorX<Quad> own_motion(const Operator<T>& op, const MatrixX
 }
 
 /// One operator in one scalar on one problem.
-template <class T> class Run {
+template <class T> class PhaseRun {
  public:
-  Run(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a, Accuracy wanted)
+  PhaseRun(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a, Accuracy wanted)
       : op_(row.make<T>()), problem_(problem.cast<T>()), damping_(damping.cast<T>()), wanted_(wanted) {
     op_->analyze(problem_.structure);
     workspace_ = std::make_unique<Workspace<T>>(op_->workspace());
@@ -63,7 +63,7 @@ template <class T> class Run {
   std::unique_ptr<Workspace<T>> workspace_;
 };
 
-template <class T> void time(Run<T>& run, double budget, Cell& cell) {
+template <class T> void time(PhaseRun<T>& run, double budget, Cell& cell) {
   Report ignored;
   cell.time = bench::stopwatch([&] { ignored = run.both(); }, budget).lowest;
   cell.solve = bench::stopwatch([&] { ignored = run.solve(); }, budget).lowest;
@@ -82,7 +82,7 @@ template <class T> Cell measure(const Rung& rung, const Question& q) {
   Cell cell;
   cell.rung = rung.name;
   cell.style = rung.style;
-  Run<T> run(*rung.row, q.problem, q.damping, q.a, rung.wanted);
+  PhaseRun<T> run(*rung.row, q.problem, q.damping, q.a, rung.wanted);
   const Report report = run.both();
   cell.status = std::string(name(report.status));
   cell.iterations = report.iterations;
@@ -138,7 +138,7 @@ Cell measure(const Rung& rung, const Subject& subject, const Question& q) {
 std::int64_t operations(const OperatorRow& row, const Problem<double>& problem, const Damping<double>& damping, const VectorX<double>& a,
                         Accuracy wanted, const Report& in_double) {
   if (!std::get<Maker<Counted>>(row.makers)) return -1;
-  Run<Counted> run(row, problem, damping, a, {wanted.error, in_double.iterations});
+  PhaseRun<Counted> run(row, problem, damping, a, {wanted.error, in_double.iterations});
   const std::int64_t before = operation_count.total();
   const Report report = run.both();
   return (report.ok() || report.status == Status::not_converged) && report.iterations == in_double.iterations && report.rung == in_double.rung ? operation_count.total() - before : -1;

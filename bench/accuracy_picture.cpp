@@ -12,9 +12,9 @@ namespace delassus::accuracy {
 
 namespace {
 
-constexpr double most = 10, least = 1e-17;  // of the error's axis: no digit or no answer; exact
+constexpr double worst_drawn = 10, best_drawn = 1e-17;  // of the error's axis: no digit or no answer; exact
 
-double drawn(double error) { return std::isnan(error) ? most : std::clamp(error, least, most); }
+double drawn(double error) { return std::isnan(error) ? worst_drawn : std::clamp(error, best_drawn, worst_drawn); }
 
 double price_of(const Cell& c, Price price) {
   return price == Price::time ? c.time : c.operations > 0 ? static_cast<double>(c.operations) : std::nan("");

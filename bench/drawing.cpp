@@ -10,7 +10,7 @@ namespace delassus::bench {
 
 namespace {
 
-constexpr double width = picture_width, margin = 14, disc = 9.5;  // [user units]
+constexpr double margin = 14, disc = 9.5;  // [user units]
 
 const char* const joint_mark = "M-2.6,0a2.6,2.6 0 1,0 5.2,0a2.6,2.6 0 1,0 -5.2,0z";
 const char* const ring_mark = "M-4.6,0a4.6,4.6 0 1,0 9.2,0a4.6,4.6 0 1,0 -9.2,0z";
@@ -86,7 +86,7 @@ class Picture {
   std::string svg() const {
     const double top = annotation_.header_height;
     std::string s = format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"picture\" role=\"img\" viewBox=\"0 %.0f %.0f %.0f\" "
-                           "aria-label=\"", top > 0 ? -top : 0, width, height_ + top) +
+                           "aria-label=\"", top > 0 ? -top : 0, picture_width, height_ + top) +
                     escape("Picture of the scene " + scene_.name) + "\">" + annotation_.header;
     if (scene_.has_ground) s += ground_lines();
     for (const Surface& surface : surfaces_)
@@ -158,8 +158,8 @@ class Picture {
     low_ = high_ = corners_.front();
     for (const Point& p : corners_) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
     const Point size = (high_ - low_).cwiseMax(Point::Constant(1e-3));
-    scale_ = std::min((width - 2 * margin) / size.x(), (340 - 2 * margin) / size.y());
-    shift_ = {width / 2 - scale_ * (low_.x() + high_.x()) / 2, margin - scale_ * low_.y()};
+    scale_ = std::min((picture_width - 2 * margin) / size.x(), (340 - 2 * margin) / size.y());
+    shift_ = {picture_width / 2 - scale_ * (low_.x() + high_.x()) / 2, margin - scale_ * low_.y()};
     height_ = std::max(90.0, scale_ * size.y() + 2 * margin + 26);
     if (scale_ * size.y() < 40) shift_.y() += 20;
   }
@@ -174,7 +174,7 @@ class Picture {
       const Point at = paper(camera_(pose_[i] * middle));
       labels_.push_back({at, at, annotation_.bodies[i].label});
     }
-    spread(labels_, Point(width - disc - 1, height_ - disc - 22));
+    spread(labels_, Point(picture_width - disc - 1, height_ - disc - 22));
   }
 
   Point paper(const Point& p) const { return scale_ * p + shift_; }

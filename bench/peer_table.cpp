@@ -141,7 +141,7 @@ Use use_of(Step s) {
 }
 
 /// All that is timed, and where the times go.
-struct Run {
+struct PeerRun {
   std::vector<std::function<void()>> tasks;
   std::vector<Spread*> to;
 
@@ -189,7 +189,7 @@ PeerScene measure_peers(const Scene& scene, const std::vector<PeerRow>& rows, do
   PeerScene out{scene.name, facts.dofs, facts.rows, facts.has_loops, facts.smallest_damping, facts.largest_damping, expected.product_limit, expected.force_limit, {}};
   const std::vector<const OperatorRow*> ops = counterparts(rows);
   out.entries.reserve(rows.size() + ops.size());
-  Run run;
+  PeerRun run;
 
   std::vector<std::unique_ptr<Peer>> peers;
   for (const PeerRow& row : rows) {

@@ -16,7 +16,7 @@ json written(const PeerEntry& e) {
   return j;
 }
 
-PeerEntry entry_read(const json& j) {
+PeerEntry peer_entry_read(const json& j) {
   PeerEntry e;
   e.name = j.at("name"), e.program = j.at("program"), e.what = j.at("what");
   e.product = j.at("counterparts").at("product"), e.solve = j.at("counterparts").at("solve");
@@ -37,7 +37,7 @@ json written(const PeerScene& s) {
 
 PeerScene scene_read(const json& j) {
   PeerScene s{j.at("scene"), j.at("dof"), j.at("rows"), j.at("loops"), j.at("damping").at("smallest"), j.at("damping").at("largest"), number_of(j.at("limits").at("product_error")), number_of(j.at("limits").at("force_error")), {}};
-  for (const json& e : j.at("entries")) s.entries.push_back(entry_read(e));
+  for (const json& e : j.at("entries")) s.entries.push_back(peer_entry_read(e));
   return s;
 }
 

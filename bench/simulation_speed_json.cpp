@@ -20,7 +20,7 @@ json written(const SpeedScene& s, const SpeedEntry& e) {
           {"rows", e.rows}, {"iterations", number(e.iterations)}, {"microseconds_a_step", written(e.time)}};
 }
 
-SpeedEntry entry_read(const json& j) {
+SpeedEntry speed_entry_read(const json& j) {
   SpeedEntry e;
   e.name = j.at("name"), e.program = j.at("program"), e.what = j.at("what");
   e.cannot = j.at("cannot"), e.disagrees = j.at("disagrees"), e.ended = j.at("ended");
@@ -50,7 +50,7 @@ void from_json(const json& j, SimulationSpeed& t) {
       scene.example = {s.at("example"), s.at("scene"), s.at("residual"), s.at("asked_steps"), s.at("robot"), s.at("without").get<std::vector<std::string>>()};
       scene.dofs = s.at("dof");
     }
-    t.scenes.back().entries.push_back(entry_read(s));
+    t.scenes.back().entries.push_back(speed_entry_read(s));
   }
 }
 

@@ -17,16 +17,16 @@ using simulation::Cone;
 using simulation::ContactProblem;
 using simulation::FrictionLaw;
 
-struct Kind {
+struct PileKind {
   const char* name;
   Index bodies;
   bool joints;
   Index repeats;  ///< one contact in so many is its own; 1: all are
 };
-constexpr Kind kinds[] = {{"free", 5, false, 1}, {"free_repeated", 5, false, 2}, {"chain", 25, true, 1}, {"chain_repeated", 25, true, 4}};
+constexpr PileKind pile_kinds[] = {{"free", 5, false, 1}, {"free_repeated", 5, false, 2}, {"chain", 25, true, 1}, {"chain_repeated", 25, true, 4}};
 constexpr Index freedoms = 30;  // of every kind
 
-ContactProblem<double> problem_of(const Kind& kind, double density, double damping, FrictionLaw law, int seed) {
+ContactProblem<double> problem_of(const PileKind& kind, double density, double damping, FrictionLaw law, int seed) {
   const Index contacts = std::llround(density * freedoms / 3);
   return pile({.bodies = kind.bodies, .contacts = contacts, .distinct = (contacts + kind.repeats - 1) / kind.repeats, .damping = damping,
                .joints = kind.joints, .law = law, .seed = static_cast<std::uint64_t>(seed)});
@@ -43,7 +43,7 @@ std::vector<SolverProblem> generated_problems(int seeds) {
   std::vector<SolverProblem> out;
   for (const char* const set : {"equality", "relaxed", "exact"})
     for (const double density : densities)
-      for (const Kind& kind : kinds)
+      for (const PileKind& kind : pile_kinds)
         for (int seed = 0; seed < seeds; ++seed)
           for (const double damping : {0.0, 1e-4}) {
             const bool equality = set == std::string("equality");

@@ -27,7 +27,7 @@ using bench::format;
 using bench::pad_left;
 using bench::pad_right;
 
-struct Options {
+struct AccuracyOptions {
   std::vector<std::string> subjects, ops;
   std::vector<double> dampings, away{0};
   std::string rhs = "consistent", out, claim = default_rung;
@@ -44,23 +44,21 @@ bool is_family(const std::string& name) {
   return std::any_of(table.begin(), table.end(), [&](const auto& row) { return row.name == name; });
 }
 
-Subject open_subject(const std::string& name, const Options& o, double away, json& warnings) {
+Subject open_subject(const std::string& name, const AccuracyOptions& o, double away, json& warnings) {
   if (is_family(name)) return subject_of(name, o.n > 0 ? o.n : middle_size(name), o.seed, away);
   const Scene scene = open(name, o.opening);
   warnings = warnings_json(scene);
   return subject_of(scene, away);
 }
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-json known(double x) { return x < 0 ? json(nullptr) : number(x); }
 
 json to_json(const Cell& c) {
-  return {{"rung", c.rung}, {"status", c.status}, {"iterations", c.iterations}, {"motion_error", number(c.errors.motion)},
-          {"lambda_error", number(c.errors.lambda)}, {"backward_error", number(c.errors.backward)},
-          {"energy_error", number(c.errors.energy)}, {"error_bound", known(c.error_bound)},
-          {"error_estimate", known(c.error_estimate)},
+  return {{"rung", c.rung}, {"status", c.status}, {"iterations", c.iterations}, {"motion_error", finite_json(c.errors.motion)},
+          {"lambda_error", finite_json(c.errors.lambda)}, {"backward_error", finite_json(c.errors.backward)},
+          {"energy_error", finite_json(c.errors.energy)}, {"error_bound", known_json(c.error_bound)},
+          {"error_estimate", known_json(c.error_estimate)},
           {"bound_holds", c.error_bound < 0 ? json(nullptr) : json(c.certificate_true())},
-          {"microseconds", {{"update_and_solve", number(c.time)}, {"solve", number(c.solve)}}},
+          {"microseconds", {{"update_and_solve", finite_json(c.time)}, {"solve", finite_json(c.solve)}}},
           {"operations", c.operations < 0 ? json(nullptr) : json(c.operations)}};
 }
 
@@ -69,15 +67,15 @@ json to_json(const Table& t) {
   for (const Level& l : t.levels) {
     json cells = json::array();
     for (const Cell& c : l.cells) cells.push_back(to_json(c));
-    levels.push_back({{"damping", l.damping == own_damping ? json("own") : json(l.damping)}, {"largest_eigenvalue", number(l.largest_eigenvalue)},
-                      {"condition", number(l.condition)}, {"reference_bound", known(l.reference_bound)},
-                      {"reference_against_definition", number(l.disagreement)},
+    levels.push_back({{"damping", l.damping == own_damping ? json("own") : json(l.damping)}, {"largest_eigenvalue", finite_json(l.largest_eigenvalue)},
+                      {"condition", finite_json(l.condition)}, {"reference_bound", known_json(l.reference_bound)},
+                      {"reference_against_definition", finite_json(l.disagreement)},
                       {"no_reference", l.no_reference.empty() ? json(nullptr) : json(l.no_reference)}, {"rungs", cells}});
   }
   return {{"subject", t.name}, {"dof", t.dofs}, {"rows", t.rows}, {"away", t.away}, {"levels", levels}};
 }
 
-std::string power(double x) { return std::isnan(x) ? "–" : x == 0 ? "0" : format("%.0e", x); }
+std::string decade_text(double x) { return std::isnan(x) ? "–" : x == 0 ? "0" : format("%.0e", x); }
 std::string exponent(double x) { return std::isnan(x) ? "–" : x == 0 ? "exact" : format("%.1f", std::log10(x)); }
 
 void print_cell(const Cell& c, std::size_t width) {
@@ -93,11 +91,11 @@ void print_cell(const Cell& c, std::size_t width) {
 void print_level(const Level& l, std::size_t width) {
   if (l.damping == own_damping) std::printf("\nown damping");
   else std::printf("\nR⁻¹ = %g 1/kg, R λmax = %.0e", l.damping, l.largest_eigenvalue / l.damping);
-  std::printf(", κ %s; ", power(l.condition).c_str());
+  std::printf(", κ %s; ", decade_text(l.condition).c_str());
   if (!l.no_reference.empty()) std::printf("%s\n", l.no_reference.c_str());
   else
-    std::printf("reference within %s, against the definition %s\n", l.reference_bound < 0 ? "–" : power(l.reference_bound).c_str(),
-                power(l.disagreement).c_str());
+    std::printf("reference within %s, against the definition %s\n", l.reference_bound < 0 ? "–" : decade_text(l.reference_bound).c_str(),
+                decade_text(l.disagreement).c_str());
   std::printf("  %s   motion        λ backward    bound  true  steps  time µs solve µs operations  status\n",
               pad_right("log10 of errors", width).c_str());
   for (const Cell& c : l.cells) print_cell(c, width);
@@ -130,7 +128,7 @@ bool all_hold(const std::vector<Claim>& made) {
   return std::all_of(made.begin(), made.end(), [](const Claim& c) { return c.holds(); });
 }
 
-accuracy::Options settings(const Options& o) {
+accuracy::Options settings(const AccuracyOptions& o) {
   accuracy::Options s;
   s.dampings = o.dampings.empty() ? dampings_up_to(claimed_to) : o.dampings;
   s.random_right_side = o.rhs == "random";
@@ -140,7 +138,7 @@ accuracy::Options settings(const Options& o) {
   return s;
 }
 
-int some(const Options& o) {
+int some(const AccuracyOptions& o) {
   std::vector<Table> tables;
   json out = json::array();
   for (const std::string& name : o.subjects)
@@ -161,7 +159,7 @@ int some(const Options& o) {
   return all_hold(made) ? good : law_broken;
 }
 
-int steps(const Options& o) {
+int steps(const AccuracyOptions& o) {
   json out = json::array();
   for (const std::string& name : o.subjects)
     for (const double away : o.away)
@@ -182,8 +180,8 @@ int steps(const Options& o) {
 }
 
 /// Whole simulations.
-int simulations(const Options& o) {
-  SimulationOptions measured = o.simulated.measured;
+int simulations(const AccuracyOptions& o) {
+  accuracy::SimulationOptions measured = o.simulated.measured;
   measured.duration = options::seconds_of(o.simulated.duration);
   measured.ops = o.ops;
   measured.stop = interrupted;
@@ -211,7 +209,7 @@ int simulations(const Options& o) {
 }
 
 /// The figures of docs/accuracy.md.
-int all(const Options& o) {
+int all(const AccuracyOptions& o) {
   accuracy::Options timed = settings(o);
   if (o.dampings.empty()) timed.dampings = dampings_up_to(1e14);
   const auto progress = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
@@ -237,7 +235,7 @@ int all(const Options& o) {
   return all_hold(made) ? good : law_broken;
 }
 
-int run_accuracy(const Options& o) {
+int run_accuracy(const AccuracyOptions& o) {
   if (o.all != o.subjects.empty())
     throw ModelError("", "accuracy", o.all ? "--all and a subject are given" : "no subject is given", "scenes and families, or --all; give one of the two");
   for (const double d : o.dampings)
@@ -253,7 +251,7 @@ int run_accuracy(const Options& o) {
 
 void add_accuracy(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("accuracy", "error against time and operations for every rung and damping");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<AccuracyOptions>();
   c->add_option("SUBJECT", o->subjects, "scenes (also files and swimmer:N) and families");
   const options::Option* simulate = c->add_flag("--simulate", o->simulate, "whole simulations of scenes: integrators, solvers, tolerances and steps");
   c->add_option("--n", o->n, "size of families; when left out, the middle one")->check(options::whole(1))->excludes(simulate);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/text.h"
+#include "cli/common.h"
 
 namespace delassus::cli {
 
@@ -15,20 +16,19 @@ using bench::pad_right;
 
 namespace {
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 json text(const std::string& s) { return s.empty() ? json(nullptr) : json(s); }
-json to_json(const Distance& d) { return {{"metres", number(d.metres)}, {"radians", number(d.radians)}}; }
+json to_json(const Distance& d) { return {{"metres", finite_json(d.metres)}, {"radians", finite_json(d.radians)}}; }
 json to_json(const Reference& r) {
-  return {{"error", to_json(r.error)}, {"order", number(r.order)}, {"extrapolated", r.extrapolates}, {"why_not", text(r.why_not)}};
+  return {{"error", to_json(r.error)}, {"order", finite_json(r.order)}, {"extrapolated", r.extrapolates}, {"why_not", text(r.why_not)}};
 }
 json to_json(const SimulatedCell& c, bool relaxed) {
   json out = {{"step", c.step}, {"tolerance", c.tolerance > 0 ? json(c.tolerance) : json(nullptr)}, {"why_not", text(c.why_not)}, {"error", to_json(c.error)},
-              {"order", number(c.order)}, {"seconds", number(c.seconds)}, {"steps", c.steps}, {"rejected", c.rejected}, {"iterations", c.iterations}};
+              {"order", finite_json(c.order)}, {"seconds", finite_json(c.seconds)}, {"steps", c.steps}, {"rejected", c.rejected}, {"iterations", c.iterations}};
   if (relaxed) out["numerical"] = to_json(c.numerical), out["modelling"] = to_json(c.modelling);
   return out;
 }
 
-std::string power(double x) { return std::isnan(x) ? "–" : x == 0 ? "0" : format("%.1e", x); }
+std::string error_text(double x) { return std::isnan(x) ? "–" : x == 0 ? "0" : format("%.1e", x); }
 
 void print_reference(const char* law, const Reference& r, const SimulatedScene& s) {
   if (!r.why_not.empty()) {
@@ -36,7 +36,7 @@ void print_reference(const char* law, const Reference& r, const SimulatedScene& 
     return;
   }
   std::printf("reference%s by %s, %s %g s and %s: within %s m, %s rad; order seen %.2f%s\n", law, s.reference_by.c_str(), r.extrapolates ? "limit of steps to" : "steps of",
-              s.reference_step, r.extrapolates ? "its doubles" : "compared with its doubles", power(r.error.metres).c_str(), power(r.error.radians).c_str(), r.order,
+              s.reference_step, r.extrapolates ? "its doubles" : "compared with its doubles", error_text(r.error.metres).c_str(), error_text(r.error.radians).c_str(), r.order,
               r.extrapolates ? "" : ", not the declared one: nothing is extrapolated");
 }
 
@@ -54,7 +54,7 @@ void print_line(const SimulatedLine& line, bool laws, double floor) {
       continue;
     }
     for (const Distance& d : {c.error, c.numerical, c.modelling}) {
-      row += pad_left(power(d.metres), 9) + pad_left(power(d.radians), 9);
+      row += pad_left(error_text(d.metres), 9) + pad_left(error_text(d.radians), 9);
       if (!laws) break;
       if (!line.relaxed) {
         row += pad_left("", 36);
@@ -91,7 +91,7 @@ void print_simulated(const SimulatedScene& s) {
   print_reference(s.has_relaxed ? " of the exact law" : "", s.reference, s);
   if (s.has_relaxed) {
     print_reference(" of the relaxed law", s.relaxed, s);
-    std::printf("their limits are %s m, %s rad apart\n", power(s.between_laws.metres).c_str(), power(s.between_laws.radians).c_str());
+    std::printf("their limits are %s m, %s rad apart\n", error_text(s.between_laws.metres).c_str(), error_text(s.between_laws.radians).c_str());
   }
   std::printf("\n        step    error      rad%s  order  time ms    steps iterations or rejected\n", s.has_relaxed ? "   numer.      rad   model.      rad" : "");
   for (const SimulatedLine& line : s.lines) print_line(line, s.has_relaxed, s.reference.error.size());

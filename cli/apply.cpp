@@ -13,7 +13,7 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct ApplyOptions {
   std::string scene, op, input, rhs;
   bool solve = false, as_json = false;
   double damping = 0, accuracy = 0;
@@ -78,7 +78,7 @@ struct Input {
   std::string what;
 };
 
-Input input_of(const Options& o, const Scene& scene, Index rows) {
+Input input_of(const ApplyOptions& o, const Scene& scene, Index rows) {
   const std::string meaning = o.solve ? "accelerations a of the constraint rows" : "forces f of the constraint rows";
   if (!o.input.empty()) return {read_vector(o.input, rows, meaning), meaning + ", read from " + o.input};
   if (o.rhs == "consistent") return {reachable(problem_of(scene), scene.damping), "A times ones: " + meaning + " that forces of 1 cause"};
@@ -91,7 +91,7 @@ Input input_of(const Options& o, const Scene& scene, Index rows) {
   return {VectorX<double>::Ones(rows), "ones: a sample"};
 }
 
-void print_text(const Options& o, const Model& model, const Input& input, const Answer& answer) {
+void print_text(const ApplyOptions& o, const Model& model, const Input& input, const Answer& answer) {
   std::printf("%s  %s  %s\ninput: %s\n", o.scene.c_str(), o.op.c_str(), o.solve ? "f = A⁻¹ a" : "a = A f", input.what.c_str());
   std::printf("%6s  %24s %-6s  %24s %-6s  %s\n", "row", "input", "", "output", "", "what it is");
   for (Index i = 0; i < input.values.size(); ++i) {
@@ -116,7 +116,7 @@ void print_text(const Options& o, const Model& model, const Input& input, const 
   if (answer.cost > 0) std::printf("update and solve: %.2f times the operations of lcaba\n", answer.cost);
 }
 
-int apply(const Options& o, bool has_damping) {
+int apply(const ApplyOptions& o, bool has_damping) {
   const OperatorRow& row = find_operator(o.op);
   const Scene scene = open(o.scene, o.opening, has_damping ? std::optional<double>(o.damping) : std::nullopt);
   require_capability(row, o.solve);
@@ -152,7 +152,7 @@ int apply(const Options& o, bool has_damping) {
 
 void add_apply(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("apply", "apply or invert one operator: a = A f, or with --solve f = A⁻¹ a");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ApplyOptions>();
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--op", o->op, "operator (see `delassus list operators`)")->required();
   c->add_flag("--solve", o->solve, "f = A⁻¹ a instead of a = A f");

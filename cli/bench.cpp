@@ -15,7 +15,7 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct BenchOptions {
   std::vector<std::string> scenes, ops;
   std::string baseline;
   double budget = 0.02, slack = 1.5;
@@ -30,7 +30,7 @@ struct Options {
 
 constexpr const char* phases[] = {"analyze", "update", "new_damping", "apply", "solve"};
 
-json scene_json(const std::string& name, const Options& o) {
+json scene_json(const std::string& name, const BenchOptions& o) {
   const Scene scene = open(name, o.opening);
   bench::SceneResult r = bench::facts_of(scene, false);
   const Problem<double> problem = problem_of(scene);
@@ -102,7 +102,7 @@ int compare_all(const json& scenes, json baseline, double slack) {
   return worse;
 }
 
-int run_bench(const Options& o) {
+int run_bench(const BenchOptions& o) {
   if (!o.compared.empty()) return run_compare(o.compared, o.slack, o.as_json);
   if (o.table1) return run_table1({o.scenes, o.ops, o.from, o.probe, o.budget, o.as_json});
   if (o.peers) return run_peers({o.scenes, o.from, o.budget, o.as_json});
@@ -133,7 +133,7 @@ int run_bench(const Options& o) {
 
 void add_bench(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("bench", "time, counted operations and memory of operators on scenes");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<BenchOptions>();
   c->add_option("--scene", o->scenes, "only these scenes (also files and swimmer:N)");
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--budget", o->budget, "seconds of timing per phase")->check(options::above(0, "s"))->capture_default_str();

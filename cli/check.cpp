@@ -14,7 +14,7 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string scene, family;
   std::vector<std::string> ops;
   std::string defect;
@@ -27,7 +27,7 @@ struct Options {
 };
 
 /// The cases the options ask for: a scene; one family; or every family at the middle of its sizes.
-std::vector<laws::Case> cases(const Options& o, json& warnings) {
+std::vector<laws::Case> cases(const CheckOptions& o, json& warnings) {
   if (!o.scene.empty()) {
     const Scene scene = open(o.scene, o.opening);
     warnings = warnings_json(scene);
@@ -114,7 +114,7 @@ void print_cases(const std::vector<laws::Case>& all) {
   std::fflush(stdout);
 }
 
-int check(const Options& o) {
+int check(const CheckOptions& o) {
   if (!o.family.empty() && !o.scene.empty())
     throw ModelError("", "check", "both --family and --scene are given", "one of them, or none; without either every family is checked");
   const auto ops = chosen_operators(o.ops, o.defect);
@@ -154,7 +154,7 @@ int check(const Options& o) {
   return end_of_run(failed ? law_broken : good, "the operators and laws that follow were not checked");
 }
 
-int digits_of(const Options& o) {
+int digits_of(const CheckOptions& o) {
   if (o.ops.size() > 1) throw ModelError("", "--op", "is given more than once with --digits", "one of aba_sweep, lcaba; run it twice for both");
   return check_digits({o.scene, o.family, o.n, o.seed, o.damping, o.ops.empty() ? "lcaba" : o.ops.front(), o.picture, o.as_json, o.opening});
 }
@@ -163,7 +163,7 @@ int digits_of(const Options& o) {
 
 void add_check(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("check", "hold the laws against the references; worst error ratio per law");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CheckOptions>();
   c->add_option("--op", o->ops, "only these operators");
   c->add_option("--defect", o->defect, "a wrong operator (see `delassus list defects`)");
   c->add_option("--family", o->family, "one family of random problems (see `delassus list families`)");

@@ -71,6 +71,9 @@ json damping_blocks_json(const Damping<double>& damping) {
   return blocks;
 }
 
+json finite_json(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
+json known_json(double x) { return x < 0 ? json(nullptr) : finite_json(x); }
+
 json matrix_json(const MatrixX<double>& m) {
   json rows = json::array();
   for (Index i = 0; i < m.rows(); ++i) {

@@ -32,6 +32,10 @@ void add_scene_options(options::Command& app, SceneOptions& options);
 [[nodiscard]] json damping_json(const Damping<double>& damping);
 /// [{row, R_inverse: [[…]]}] of the dense blocks.
 [[nodiscard]] json damping_blocks_json(const Damping<double>& damping);
+/// A number, or null where it is not finite.
+[[nodiscard]] json finite_json(double x);
+/// The same, and null where it is negative: not known.
+[[nodiscard]] json known_json(double x);
 /// Rows of a matrix.
 [[nodiscard]] json matrix_json(const MatrixX<double>& m);
 /// {status, where, iterations, backward_error, error_bound, rcond_estimate}; null: not computed.

@@ -13,14 +13,14 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct DynamicsOptions {
   std::string scene, velocity, torque, acceleration, op = "ladder";
   bool as_json = false;
   double damping = 0, accuracy = 0;
   SceneOptions opening;
 };
 
-struct Answer {
+struct DynamicsAnswer {
   VectorX<double> nu, tau, wanted;                       ///< given, or zero
   VectorX<double> c, free, acceleration, rows, lambda;
   Report update, free_report, report;
@@ -30,9 +30,9 @@ VectorX<double> given(const std::string& file, Index size, const std::string& me
   return file.empty() ? VectorX<double>::Zero(size) : read_vector(file, size, meaning);
 }
 
-Answer compute(const Options& o, const Scene& scene) {
+DynamicsAnswer compute(const DynamicsOptions& o, const Scene& scene) {
   const Index n = scene.model.dofs(), m = static_cast<Index>(scene.damping.diagonal.size());
-  Answer a;
+  DynamicsAnswer a;
   a.nu = given(o.velocity, n, "velocities of the degrees of freedom");
   a.tau = given(o.torque, n, "torques of the degrees of freedom");
   a.wanted = given(o.acceleration, m, "accelerations of the constraint rows");
@@ -45,7 +45,7 @@ Answer compute(const Options& o, const Scene& scene) {
   return a;
 }
 
-std::string outcome(const Model& model, const Answer& a) {
+std::string outcome(const Model& model, const DynamicsAnswer& a) {
   const std::string at = place(model, a.report, !a.free_report.ok());
   std::string text = "status " + std::string(name(a.report.status)) + (at.empty() ? "" : " " + at);
   if (!a.report.rung.empty()) text += ", by " + std::string(a.report.rung);
@@ -53,7 +53,7 @@ std::string outcome(const Model& model, const Answer& a) {
   return text;
 }
 
-void print_text(const Options& o, const Scene& scene, const Answer& a) {
+void print_text(const DynamicsOptions& o, const Scene& scene, const DynamicsAnswer& a) {
   const auto& g = scene.gravity;
   std::printf("%s  M ν̇ + c = τ + Jᵀλ,  J ν̇ + J̇ν + R⁻¹λ = a, every row held on both sides; %s\n", o.scene.c_str(),
               scene.has_gravity ? bench::format("gravity (%g, %g, %g) m/s²", g[0], g[1], g[2]).c_str() : "no gravity");
@@ -72,9 +72,9 @@ void print_text(const Options& o, const Scene& scene, const Answer& a) {
 
 json vector_json(const VectorX<double>& x) { return std::vector<double>(x.begin(), x.end()); }
 
-int dynamics(const Options& o, bool has_damping) {
+int dynamics(const DynamicsOptions& o, bool has_damping) {
   const Scene scene = open(o.scene, o.opening, has_damping ? std::optional<double>(o.damping) : std::nullopt);
-  const Answer a = compute(o, scene);
+  const DynamicsAnswer a = compute(o, scene);
   if (o.as_json) {
     const json j = {{"scene", scene.name}, {"op", o.op}, {"dof", a.c.size()}, {"rows", a.lambda.size()}, {"gravity", {scene.gravity[0], scene.gravity[1], scene.gravity[2]}},
                     {"damping", damping_json(scene.damping)}, {"velocity", vector_json(a.nu)}, {"torque", vector_json(a.tau)},
@@ -92,7 +92,7 @@ int dynamics(const Options& o, bool has_damping) {
 
 void add_dynamics(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("dynamics", "bias forces, accelerations and constraint forces at given velocities and torques");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<DynamicsOptions>();
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--velocity", o->velocity, "JSON file with ν, one number per degree of freedom [rad/s or m/s]; at rest when left out");
   c->add_option("--torque", o->torque, "JSON file with τ, one number per degree of freedom [N m or N]; zero when left out");

@@ -11,7 +11,7 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string file, law, defect;
   std::vector<std::string> ops;
   bool all = false, as_json = false;
@@ -45,7 +45,7 @@ void print(const laws::Outcome& o, std::size_t width) {
                 o.verdict.note.c_str());
 }
 
-int replay(const Options& o) {
+int replay(const ReplayOptions& o) {
   const Asked asked = read(o.file);
   const std::string law = o.all ? std::string() : o.law.empty() ? asked.law : o.law;
   std::vector<std::string> ops = o.ops;
@@ -75,7 +75,7 @@ int replay(const Options& o) {
 
 void add_replay(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("replay", "build a failure found by `stress`, or any spec, again and check it");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReplayOptions>();
   c->add_option("FILE", o->file, "a failure written by `stress`, or a spec as JSON")->required();
   c->add_option("--law", o->law, "this law instead of the one that failed");
   c->add_option("--op", o->ops, "these operators instead of the one that failed");

@@ -12,12 +12,12 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct ReportCommand {
   std::string directory, defect;
   std::vector<std::string> ops;
 };
 
-int report(bench::ReportOptions options, const Options& o) {
+int report(bench::ReportOptions options, const ReportCommand& o) {
   if (!o.ops.empty() || !o.defect.empty()) options.ops = chosen_operators(o.ops, o.defect);
   bench::check_writable(o.directory);
   keep_on_interrupt();
@@ -38,7 +38,7 @@ int report(bench::ReportOptions options, const Options& o) {
 void add_report(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("report", "check and time every operator on every scene; write a page and the numbers");
   auto options = std::make_shared<bench::ReportOptions>();
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReportCommand>();
   c->add_option("--out", o->directory, "directory for index.html and results.json")->required();
   c->add_option("--scene", options->scenes, "only these scenes, without swimmers of growing length and families (repeat, or several names)");
   c->add_option("--op", o->ops, "only these operators, without swimmers of growing length (repeat, or several names)");

@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct SimulateCommand {
   std::string scene, duration = "1s", record, plot, capture;
   bool as_json = false, as_markdown = false, explain = false;
   std::optional<double> gravity;
@@ -83,7 +83,7 @@ Sample sample_of(const simulation::Simulation<double>& s, const simulation::Obse
   return {s.time(), s.state().q, s.state().nu, o.kinetic, o.potential, r.rows, r.islands, r.iterations, r.residual, r.drift};
 }
 
-Ran run_scene(const Options& o, const Scene& scene) {
+Ran run_scene(const SimulateCommand& o, const Scene& scene) {
   simulation::Simulation<double> s(scene, o.settings);
   simulation::Observer<double> observe(scene);
   const auto wanted = static_cast<std::int64_t>(std::llround(options::seconds_of(o.duration) / o.settings.step));
@@ -136,7 +136,7 @@ void check_writable(const char* option, const std::string& file) {
     throw ModelError(file, option, "cannot be written", "a file in a folder that exists; make the folder first");
 }
 
-void record(const Options& o, const Scene& scene, const Ran& ran) {
+void record(const SimulateCommand& o, const Scene& scene, const Ran& ran) {
   if (o.record.empty()) return;
   if (o.record.ends_with(".html")) return write_page(o.record, scene, o.settings.step, ran.frames);
   std::ofstream out(o.record);
@@ -157,7 +157,7 @@ void record(const Options& o, const Scene& scene, const Ran& ran) {
   if (!out.flush()) throw ModelError(o.record, "--record", "cannot be written", "a .csv, .json or .html file in a folder that exists; make room, or the folder first");
 }
 
-void draw(const Options& o, const Ran& ran) {
+void draw(const SimulateCommand& o, const Ran& ran) {
   if (o.plot.empty()) return;
   std::vector<bench::Series> series{{"kinetic", {}, 0, false}, {"potential", {}, 1, false}, {"sum", {}, 2, false}};
   for (const Sample& s : ran.samples) {
@@ -177,7 +177,7 @@ json energy_json(const simulation::Observed<double>& o) {
   return {{"kinetic", o.kinetic}, {"potential", o.potential}, {"linear_momentum", three(o.linear)}, {"angular_momentum", three(o.angular)}, {"centre", three(o.centre)}};
 }
 
-json ran_json(const Options& o, const Scene& scene, const Ran& r) {
+json ran_json(const SimulateCommand& o, const Scene& scene, const Ran& r) {
   json out = {{"scene", scene.name}, {"step", o.settings.step}, {"steps", r.steps}, {"time", static_cast<double>(r.steps) * o.settings.step},
           {"seconds", r.seconds}, {"begin", energy_json(r.begin)}, {"end", energy_json(r.end)}, {"most_rows", r.most_rows}, {"most_islands", r.most_islands},
           {"iterations", r.iterations}, {"residual", r.residual}, {"drift", r.drift}, {"left", r.left}, {"path", r.last.path},
@@ -186,7 +186,7 @@ json ran_json(const Options& o, const Scene& scene, const Ran& r) {
   return out;
 }
 
-void print_ran(const Options& o, const Ran& r) {
+void print_ran(const SimulateCommand& o, const Ran& r) {
   std::printf("%s  %lld steps of %g s, %.4g s; %s a step (%.0f steps a second)\n", o.scene.c_str(), static_cast<long long>(r.steps), o.settings.step,
               static_cast<double>(r.steps) * o.settings.step, r.steps ? bench::format("%.3g µs", 1e6 * r.seconds / static_cast<double>(r.steps)).c_str() : "–",
               r.seconds > 0 ? static_cast<double>(r.steps) / r.seconds : 0.0);
@@ -212,7 +212,7 @@ std::vector<std::string> solver_names() {
   return out;
 }
 
-int simulate(const Options& o) {
+int simulate(const SimulateCommand& o) {
   Scene scene = open(o.scene, o.opening);
   if (o.gravity) scene.has_gravity = true, scene.gravity = {0, 0, -*o.gravity}, scene.motion.where["gravity"] = "--gravity";
   if (o.explain) {
@@ -237,7 +237,7 @@ int simulate(const Options& o) {
 
 void add_simulate(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("simulate", "let a scene move, with the effects it calls for and no others");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SimulateCommand>();
   c->add_option("scene", o->scene, "name, .yaml file, robot's file (URDF) or swimmer:N")->required();
   c->add_option("--duration", o->duration, "simulated time: 10, 10s, 5m, 1h")->check(options::duration())->capture_default_str();
   const options::Option* step = c->add_option("--step", o->settings.step, "step [s]; with --accuracy where steps land, 1/60 or less when left out")->check(options::above(0, "s"))->capture_default_str();

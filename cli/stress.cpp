@@ -17,7 +17,7 @@ namespace delassus::cli {
 
 namespace {
 
-struct Options {
+struct StressOptions {
   std::string time = "60s", shard, report, folder = ".", defect;
   std::optional<std::uint64_t> seed;
   std::int64_t count = 0;
@@ -72,7 +72,7 @@ std::uint64_t fresh_seed() {
   return (static_cast<std::uint64_t>(device()) << 16) ^ device();
 }
 
-laws::Search search_of(const Options& o) {
+laws::Search search_of(const StressOptions& o) {
   laws::Search s;
   const Shard shard = shard_of(o.shard);
   if (shard.of > 1 && !o.seed)
@@ -120,16 +120,16 @@ void print_failure(const laws::Failure& f) {
 }
 
 /// Where a failure is written.
-std::string path_of(const laws::Failure& f, const Options& o) { return (std::filesystem::path(o.folder) / file_name(f)).string(); }
+std::string path_of(const laws::Failure& f, const StressOptions& o) { return (std::filesystem::path(o.folder) / file_name(f)).string(); }
 
 /// The report of the shard, with the file of every failure.
-void print_json(const laws::Found& f, const Options& o) {
+void print_json(const laws::Found& f, const StressOptions& o) {
   json out = found_json(f);
   for (std::size_t k = 0; k < f.failures.size(); ++k) out["failures"][k]["file"] = path_of(f.failures[k], o);
   std::printf("%s\n", out.dump(1).c_str());
 }
 
-void print(const laws::Found& f, const Options& o) {
+void print(const laws::Found& f, const StressOptions& o) {
   std::printf("%lld problems in %.1f s, %lld checks (%lld did not apply), %zu failures; classes:\n",
               static_cast<long long>(f.problems), f.seconds, static_cast<long long>(f.checks),
               static_cast<long long>(f.skipped), f.failures.size());
@@ -141,7 +141,7 @@ void print(const laws::Found& f, const Options& o) {
 }
 
 /// Prints what was found and writes the files; the exit code.
-int conclude(const laws::Found& f, const Options& o) {
+int conclude(const laws::Found& f, const StressOptions& o) {
   for (const laws::Failure& x : f.failures) write_text(path_of(x, o), failure_json(x).dump(1));
   if (o.as_json) print_json(f, o);
   else print(f, o);
@@ -153,7 +153,7 @@ int conclude(const laws::Found& f, const Options& o) {
   return f.failures.empty() ? good : law_broken;
 }
 
-int merge(const Options& o) {
+int merge(const StressOptions& o) {
   std::vector<laws::Found> shards;
   for (const std::string& file : o.merge) {
     const json j = json::parse(read_text(file), nullptr, false);
@@ -163,7 +163,7 @@ int merge(const Options& o) {
   return conclude(laws::merged(shards), o);
 }
 
-int stress(const Options& o) {
+int stress(const StressOptions& o) {
   if (!o.merge.empty()) return merge(o);
   laws::Search s = search_of(o);
   keep_on_interrupt();
@@ -179,7 +179,7 @@ int stress(const Options& o) {
 
 void add_stress(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("stress", "randomised search for broken laws");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<StressOptions>();
   c->add_option("--time", o->time, "how long: 60 or 60s, 10m, 2h")->check(options::duration())->capture_default_str();
   c->add_option("--count", o->count, "this many problems (of all shards together) instead of a time")->check(options::whole(1));
   c->add_option("--seed", o->seed, "of the first problem; when left out, a fresh one, printed")->check(options::whole(0));

@@ -23,7 +23,7 @@ template <class T> T get(const json& j, const char* key, const std::string& file
 }
 
 constexpr const char* count = "a non-negative integer";
-constexpr const char* text = "text";
+constexpr const char* any_text = "text";
 
 }  // namespace
 
@@ -53,7 +53,7 @@ laws::Failure read_failure(const json& j, const std::string& file) {
   f.op = get<std::string>(j, "operator", file, "the name of an operator");
   const auto ratio = get<json>(j, "ratio", file, "a number or \"infinity\"");
   f.ratio = ratio.is_number() ? ratio.get<double>() : std::numeric_limits<double>::infinity();
-  f.note = get<std::string>(j, "note", file, text);
+  f.note = get<std::string>(j, "note", file, any_text);
   f.seed = get<std::uint64_t>(j, "seed", file, count);
   f.found_bodies = get<std::size_t>(j, "found_bodies", file, count);
   f.tried = get<int>(j, "tried", file, count);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SurveyCommand {
   std::string folder;
   SurveyOptions file;
   double limit = 60;
@@ -42,7 +42,7 @@ std::vector<std::string> files_under(const std::string& folder) {
 }
 
 /// One file in a process of its own: whatever happens there is that file's finding.
-json survey_one(const std::string& file, const Options& o) {
+json survey_one(const std::string& file, const SurveyCommand& o) {
   json urdfdom = nullptr;
   if (fs::path(file).extension() == ".urdf" || fs::path(file).extension() == ".URDF") {
     const Outcome asked = isolated([&](const Progress&) { return urdfdom_says(file).dump(-1, ' ', false, json::error_handler_t::replace); }, o.limit);
@@ -166,7 +166,7 @@ void print_totals(const Totals& t, bool compared) {
     std::printf("with moving joints, read by urdfdom, M regular: %d of %d load (%.1f %%)\n", t.readable_load, t.readable, 100.0 * t.readable_load / t.readable);
 }
 
-int survey(const Options& o) {
+int survey(const SurveyCommand& o) {
   const std::vector<std::string> files = files_under(o.folder);
   if (files.empty()) throw ModelError("", "survey", "'" + o.folder + "' holds no robot", "files .urdf, .sdf or MJCF .xml in it or below; expand .xacro files first");
   std::fprintf(stderr, "%zu files\n", files.size());
@@ -196,7 +196,7 @@ int survey(const Options& o) {
 
 void add_survey(options::Command& app, Run& run) {
   options::Command* c = app.add_subcommand("survey", "robots of a folder: which load, with which warnings, which not and why; M, J, J M⁻¹ Jᵀ against a second reading");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SurveyCommand>();
   c->add_option("folder", o->folder, "searched for .urdf, .sdf and MJCF .xml, with all below it; or one file")->required();
   c->add_option("--base", o->file.base, "auto: free, or fixed where M is regular only then")->check(options::one_of({"auto", "free", "fixed"}))->capture_default_str();
   c->add_option("--armature", o->file.armature, "of joints that are given none [kg m² or kg]")->check(options::at_least(0, "kg m² or kg"));

@@ -107,16 +107,16 @@ json write(const JointConstraintSpec& c) {
   return {{"body", c.body}, {"rows", c.rows}, {"seed", c.seed}, {"damping", write(c.damping)}};
 }
 
-constexpr const char* whole = "an integer";
+constexpr const char* an_integer = "an integer";
 constexpr const char* seed_text = "a non-negative integer";
 constexpr const char* triple = "three integers";
-constexpr const char* decade = "an integer decade, or null";
+constexpr const char* a_decade = "an integer decade, or null";
 
 DampingSpec read_damping(const Reader& r) {
   DampingSpec d;
   d.kind = r.choice<DampingKind>("kind", damping_names);
-  d.low = r.get<int>("low", whole);
-  d.high = r.get<int>("high", whole);
+  d.low = r.get<int>("low", an_integer);
+  d.high = r.get<int>("high", an_integer);
   d.seed = r.get<std::uint64_t>("seed", seed_text);
   return d;
 }
@@ -128,10 +128,10 @@ BodySpec read_body(const Reader& r) {
   b.dof = r.get<Index>("dof", "0 to 6");
   b.axis = r.get<std::array<int, 3>>("axis", triple);
   b.offset = r.get<std::array<int, 3>>("offset", triple);
-  b.bend_decade = r.optional<int>("bend_decade", decade);
-  b.mass_decade = r.optional<int>("mass_decade", decade);
-  b.length_decade = r.get<int>("length_decade", whole);
-  b.armature_decade = r.optional<int>("armature_decade", decade);
+  b.bend_decade = r.optional<int>("bend_decade", a_decade);
+  b.mass_decade = r.optional<int>("mass_decade", a_decade);
+  b.length_decade = r.get<int>("length_decade", an_integer);
+  b.armature_decade = r.optional<int>("armature_decade", a_decade);
   b.seed = r.get<std::uint64_t>("seed", seed_text);
   return b;
 }
@@ -139,7 +139,7 @@ BodySpec read_body(const Reader& r) {
 LinkConstraintSpec read_link(const Reader& r) {
   LinkConstraintSpec c;
   c.kind = r.choice<ConstraintKind>("kind", constraint_names);
-  c.rows = r.get<Index>("rows", whole);
+  c.rows = r.get<Index>("rows", an_integer);
   c.bodies = r.get<std::vector<Index>>("bodies", "a list of bodies");
   c.seed = r.get<std::uint64_t>("seed", seed_text);
   c.damping = read_damping(r.child("damping"));
@@ -151,7 +151,7 @@ LinkConstraintSpec read_link(const Reader& r) {
 JointConstraintSpec read_joint(const Reader& r) {
   JointConstraintSpec c;
   c.body = r.get<Index>("body", "a body");
-  c.rows = r.get<Index>("rows", whole);
+  c.rows = r.get<Index>("rows", an_integer);
   c.seed = r.get<std::uint64_t>("seed", seed_text);
   c.damping = read_damping(r.child("damping"));
   return c;

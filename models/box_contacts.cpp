@@ -17,13 +17,13 @@ using V3 = Vector3<double>;
 double reach(const PlacedBox& box, const V3& n) { return box.half.dot((box.placement.rotation.transpose() * n).cwiseAbs()); }
 
 /// A direction from b to a along which the boxes are farthest apart, among those tried so far.
-struct Axis {
+struct Separation {
   V3 n{0, 0, 1};
   double separation = -std::numeric_limits<double>::infinity();
   int kind = 0;  // 0: face of a, 1: face of b, 2: pair of edges
 };
 
-void try_axis(const PlacedBox& a, const PlacedBox& b, V3 n, int kind, double head_start, Axis& best) {
+void try_axis(const PlacedBox& a, const PlacedBox& b, V3 n, int kind, double head_start, Separation& best) {
   const V3 d = a.placement.translation - b.placement.translation;
   if (n.dot(d) < 0) n = -n;
   const double separation = n.dot(d) - reach(a, n) - reach(b, n);
@@ -33,10 +33,10 @@ void try_axis(const PlacedBox& a, const PlacedBox& b, V3 n, int kind, double hea
 /// Faces of a first, then of b, then pairs of edges; a later kind wins only by a clear lead, so that resting faces do
 /// not flicker between equal descriptions. Of two faces equally far apart the larger one wins, whatever the order of
 /// the boxes.
-Axis best_axis(const PlacedBox& a, const PlacedBox& b) {
+Separation best_axis(const PlacedBox& a, const PlacedBox& b) {
   const double lead = 1e-6 * (a.half.norm() + b.half.norm());
   const auto area = [](const PlacedBox& box, int k) { return box.half[(k + 1) % 3] * box.half[(k + 2) % 3]; };
-  Axis best;
+  Separation best;
   double largest = 0;  // face of a
   for (int k = 0; k < 3; ++k) {
     const double before = best.separation;
@@ -115,7 +115,7 @@ std::vector<ShapeContact> face_face(const Face& reference, const Face& incident,
 }
 
 /// The point midway between the two supporting edges, where they are closest.
-ShapeContact edge_edge(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
+ShapeContact edge_edge(const PlacedBox& a, const PlacedBox& b, const Separation& axis) {
   auto edge = [](const PlacedBox& box, const V3& n, V3& direction) {
     const V3 local = box.placement.rotation.transpose() * n;
     int along = 0;
@@ -134,7 +134,7 @@ ShapeContact edge_edge(const PlacedBox& a, const PlacedBox& b, const Axis& axis)
 }  // namespace
 
 std::vector<ShapeContact> box_box(const PlacedBox& a, const PlacedBox& b, double margin) {
-  const Axis axis = best_axis(a, b);
+  const Separation axis = best_axis(a, b);
   if (axis.separation > margin) return {};
   if (axis.kind == 2) return {edge_edge(a, b, axis)};
   if (axis.kind == 1) {

@@ -9,13 +9,13 @@ namespace {
 using V3 = Vector3<double>;
 
 /// The axis x(s) = p + s u, s in [−1, 1], in the box's frame.
-struct Axis {
+struct SegmentInBox {
   V3 p, u, half;
   V3 at(double s) const { return p + s * u; }
 };
 
 /// s where the axis crosses the planes x_i = ±half_i, ascending, the ends first and last.
-std::vector<double> crossings(const Axis& a) {
+std::vector<double> crossings(const SegmentInBox& a) {
   std::vector<double> out{-1, 1};
   for (Index i = 0; i < 3; ++i)
     for (const double side : {-1.0, 1.0}) {
@@ -27,7 +27,7 @@ std::vector<double> crossings(const Axis& a) {
 }
 
 /// Outside: between two crossings the squared distance is Σ (±x_i − half_i)² over the coordinates beyond their faces, a parabola.
-void least_outside(const Axis& a, const std::vector<double>& crossings, std::vector<double>& out) {
+void least_outside(const SegmentInBox& a, const std::vector<double>& crossings, std::vector<double>& out) {
   for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
     const V3 middle = a.at((crossings[k] + crossings[k + 1]) / 2);
     double slope = 0, curvature = 0;
@@ -41,7 +41,7 @@ void least_outside(const Axis& a, const std::vector<double>& crossings, std::vec
 }
 
 /// Inside: the signed distance is the largest of ±x_i − half_i, linear each; it is least where two of them are equal.
-void least_inside(const Axis& a, std::vector<double>& out) {
+void least_inside(const SegmentInBox& a, std::vector<double>& out) {
   for (Index i = 0; i < 3; ++i)
     for (Index j = i; j < 3; ++j)
       for (const double side : {-1.0, 1.0}) {
@@ -59,7 +59,7 @@ void least_inside(const Axis& a, std::vector<double>& out) {
 
 std::vector<ShapeContact> capsule_box(const Vector3<double>& centre, const Vector3<double>& half_axis, double radius, const PlacedBox& box, double margin) {
   const Pose<double> to_box = box.placement.inverse();
-  const Axis axis{to_box * centre, to_box.rotation * half_axis, box.half};
+  const SegmentInBox axis{to_box * centre, to_box.rotation * half_axis, box.half};
   struct Candidate {
     double s;
     bool outermost;  // an end or a crossing

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "algorithms/kit/index.h"
+
 #ifdef DELASSUS_QHULL
 #include <libqhull_r/qhull_ra.h>
 #endif
@@ -16,8 +18,6 @@ Surface surface(const std::vector<Vector3<double>>&, const std::vector<int>&, in
 #else
 
 namespace {
-
-std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 /// qhull's memory, released whatever happens.
 class Qhull {

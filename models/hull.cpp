@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "algorithms/kit/index.h"
+
 #include <Eigen/Geometry>
 
 namespace delassus {
@@ -25,8 +27,6 @@ namespace {
 
 using V3 = Vector3<double>;
 using Points = std::vector<V3>;
-
-std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<int> vertices_of(const Surface& s) {
   std::set<int> out;

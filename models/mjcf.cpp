@@ -5,14 +5,13 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
+#include "algorithms/kit/index.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {
 namespace {
 
 using Base = RobotOptions::Base;
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 Vector3<double> vector(const double* x) { return {x[0], x[1], x[2]}; }
 

@@ -2,12 +2,11 @@
 #include <cmath>
 
 #include "algorithms/errors/message.h"
+#include "algorithms/kit/index.h"
 #include "models/mjcf_reader.h"
 
 namespace delassus {
 namespace {
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 /// c0 + c1 x + … + c4 x⁴ and its slope.
 struct Polynomial {

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 18> drawn{"texture", "material", "camera"
 struct Attribute {
   std::string_view element, name;
 };
-constexpr Attribute attributes[] = {
+constexpr Attribute newer_attributes[] = {
     {"body", "gravcomp"}, {"body", "sleep"}, {"joint", "actuatorfrcrange"}, {"joint", "actuatorfrclimited"}, {"joint", "actuatorgravcomp"},
     {"size", "memory"}, {"compiler", "conflict"}, {"compiler", "saveinertial"}, {"mesh", "maxhullvert"}, {"key", "ctrl"}, {"key", "act"},
     {"geom", "material"}, {"geom", "adhesion"}, {"site", "material"}, {"tendon", "material"}, {"spatial", "material"}, {"fixed", "actuatorfrcrange"},
@@ -36,7 +36,7 @@ bool droppable(const Element* e) {
 
 void drop_attributes(Element* e) {
   const std::string_view name = e->Name();
-  for (const Attribute& a : attributes)
+  for (const Attribute& a : newer_attributes)
     if (name == a.element) e->DeleteAttribute(a.name.data());
   if (name == "option") while (const auto* a = e->FirstAttribute()) e->DeleteAttribute(a->Name());
   if (name == "freejoint" && (e->Attribute("align", "auto") || e->Attribute("align", "false"))) e->DeleteAttribute("align");

@@ -3,12 +3,11 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
+#include "algorithms/kit/index.h"
 #include "models/scene_loader.h"
 
 namespace delassus {
 namespace {
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

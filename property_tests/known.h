@@ -17,9 +17,6 @@ namespace delassus::laws {
 /// Apply or solve.
 enum class Function : std::uint8_t { apply, solve };
 
-/// What the errors of a scalar are computed in.
-template <class T> using Wide = std::conditional_t<ScalarTraits<T>::exact, T, Quad>;
-
 template <class To, class From> [[nodiscard]] MatrixX<To> converted(const MatrixX<From>& x) {
   MatrixX<To> y(x.rows(), x.cols());
   for (Index c = 0; c < x.cols(); ++c)

@@ -66,16 +66,16 @@ std::vector<Spectrum> spectra() {
           {"energy overflows", {{0x1p10, 0, 0x1p10}}, 0x1p509, 0x1p510, {not_converged, 0, 0}, {ok, 1, 5}}};
 }
 
-struct Said {
+struct Iterated {
   Report report;
   MatrixX<double> answer;
 };
 
 /// The workspace holds numbers of an earlier use.
-Said asked(const Operator<double>& op, const Spectrum& k, double scale) {
+Iterated iterated(const Operator<double>& op, const Spectrum& k, double scale) {
   MatrixX<double> a(op.size(), 1);
   for (Index r = 0; r < a.rows(); ++r) a(r, 0) = scale * (r % 2 == 0 ? k.first : k.second);
-  Said said{{}, MatrixX<double>::Zero(a.rows(), 1)};
+  Iterated said{{}, MatrixX<double>::Zero(a.rows(), 1)};
   Workspace<double> w(op.workspace(1));
   w.fill(0.75);
   said.report = op.solve(a, said.answer, w);
@@ -89,7 +89,7 @@ std::string ends_wrong(const Report& r, const End& e) {
 }
 
 /// The same digits and the same report.
-bool scales(const Said& said, const Said& scaled, double scale) {
+bool scales(const Iterated& said, const Iterated& scaled, double scale) {
   return scaled.report.status == said.report.status && scaled.report.iterations == said.report.iterations &&
          scaled.report.backward_error == said.report.backward_error && judge_bits(scaled.answer / scale, said.answer).passed();
 }
@@ -103,13 +103,13 @@ std::string krylov_wrong(const OperatorRow& row) {
     op->analyze(problem.structure);
     if (!op->update(problem, Damping<double>::uniform(problem.structure->rows, 0)).ok()) return std::string(k.what) + ": update";
     const End& end = row.name == "cg" ? k.plain : k.preconditioned;
-    const Said said = asked(*op, k, 1);
+    const Iterated said = iterated(*op, k, 1);
     const std::string words = ends_wrong(said.report, end);
     if (!words.empty()) return std::string(row.name) + ", " + k.what + ": " + words;
     if (k.second == 0 && !said.answer.isZero(0)) return std::string(row.name) + ": an answer to zero";
     if (end.most == 0) continue;
     for (const double scale : {0x1p300, 0x1p-300})
-      if (k.second < 0x1p300 && !scales(said, asked(*op, k, scale), scale)) return std::string(row.name) + ", " + k.what + ": other digits in other units";
+      if (k.second < 0x1p300 && !scales(said, iterated(*op, k, scale), scale)) return std::string(row.name) + ", " + k.what + ": other digits in other units";
   }
   return {};
 }

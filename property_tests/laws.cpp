@@ -17,7 +17,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
 using X = Rational;
 
 constexpr auto can_apply = why_not_function<double, apply>;

@@ -31,8 +31,6 @@ bool long_iteration(const OperatorRow& op, const Case& c) {
   return route.get().solve(x, y, w).iterations > 6;
 }
 
-template <class T> using Dense = MatrixX<Wide<T>>;
-
 /// Bound of F(x) for double; nothing for exact scalars.
 template <class T> auto bound_of(Function f, const OperatorRow& op, const Case& c, const MatrixX<T>& x) {
   if constexpr (ScalarTraits<T>::exact) return 0;
@@ -196,5 +194,6 @@ template <class T> Verdict resolvent(const OperatorRow& op, const Case& c) {
   template Verdict resolvent<T>(const OperatorRow&, const Case&);
 DELASSUS_LAWS(double)
 DELASSUS_LAWS(Rational)
+#undef DELASSUS_LAWS
 
 }  // namespace delassus::laws

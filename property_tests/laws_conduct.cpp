@@ -212,5 +212,6 @@ Verdict zero_damping(const OperatorRow& op, const Case& c) {
   template Verdict nan_stays<F>(const OperatorRow&, const Case&);
 DELASSUS_LAWS(Function::apply)
 DELASSUS_LAWS(Function::solve)
+#undef DELASSUS_LAWS
 
 }  // namespace delassus::laws

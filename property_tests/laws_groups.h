@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/kit/test_scalars.h"
-#include "property_tests/laws.h"
+#include "property_tests/known.h"
 
 namespace delassus::laws {
 
@@ -12,6 +12,8 @@ namespace delassus::laws {
 [[nodiscard]] std::vector<LawRow> rank_laws();        ///< which hard rows depend on others, in any description
 [[nodiscard]] std::vector<LawRow> mechanism_laws();   ///< other descriptions of the same mechanism
 [[nodiscard]] std::vector<LawRow> scalar_laws();      ///< float, Quad, refusals, threads
+
+inline constexpr Function apply = Function::apply, solve = Function::solve;
 
 /// The laws on other descriptions are many: exact arithmetic takes the smaller half of its cases only.
 using Reason = const char* (*)(const OperatorRow&, const Case&);

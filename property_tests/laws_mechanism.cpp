@@ -7,8 +7,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
-
 const Case& moved(const Case& c) {
   return second_case(c, "world moved", [&](const auto& p, const auto& d) { return world_moved<double>(p, d, c.seed); });
 }

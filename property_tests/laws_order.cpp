@@ -8,8 +8,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
-
 /// xᵀ y of every column, 1×k.
 template <class W> MatrixX<W> forms(const MatrixX<W>& x, const MatrixX<W>& y) {
   MatrixX<W> out = MatrixX<W>::Constant(1, x.cols(), W(0));

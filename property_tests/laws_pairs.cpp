@@ -8,8 +8,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
-
 template <class T> struct Pair {
   Report report;
   MatrixX<T> nu, lambda;

@@ -8,8 +8,6 @@
 namespace delassus::laws {
 namespace {
 
-template <class T> using Dense = MatrixX<Wide<T>>;
-
 const Case& as_links(const Case& c) {
   return variant(c, "joint rows as links", [](const Case& of) { return joint_rows_as_links(of.problem, of.damping); });
 }
@@ -112,5 +110,7 @@ DELASSUS_WITNESS(Function::apply, Witness::maximal)
 DELASSUS_WITNESS(Function::solve, Witness::maximal)
 DELASSUS_WITNESS(Function::apply, Witness::kkt)
 DELASSUS_WITNESS(Function::solve, Witness::kkt)
+#undef DELASSUS_LAWS
+#undef DELASSUS_WITNESS
 
 }  // namespace delassus::laws

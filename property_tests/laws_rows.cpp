@@ -9,8 +9,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
-
 const Case& fewer(const Case& c) {
   return second_case(c, "one constraint left out", [&](const auto& p, const auto& d) { return one_left_out<double>(p, d, c.seed); }, Data::given);
 }

@@ -11,8 +11,6 @@
 namespace delassus::laws {
 namespace {
 
-constexpr Function apply = Function::apply, solve = Function::solve;
-
 /// 30 eps(float) · bound reaches the largest entry of the answer.
 bool float_promises_nothing(Function f, const OperatorRow& op, const Case& c) {
   const MatrixX<double> x = vectors<double>(c.rows(), 1, c.seed);

@@ -196,9 +196,9 @@ class Copy:
 
     def configure(self):
         if self.way_in:
-            subprocess.run(["cmake", "--preset", "release"], check=True, stdout=subprocess.DEVNULL, cwd=self.tree)
+            subprocess.run(["cmake", "--preset", "release", "-DDELASSUS_UNITY=OFF"], check=True, stdout=subprocess.DEVNULL, cwd=self.tree)
         elif not os.path.exists(os.path.join(self.build, "build.ninja")):
-            subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCCACHE=OFF",
+            subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCCACHE=OFF", "-DDELASSUS_UNITY=OFF",
                             "-DCMAKE_CXX_FLAGS=-O2 -march=native -w",
                             # scalars that are not compiled are not called either
                             "-DCMAKE_EXE_LINKER_FLAGS=-no-pie -Wl,--unresolved-symbols=ignore-all"], check=True, stdout=subprocess.DEVNULL)

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
+#include "algorithms/kit/index.h"
+
 namespace delassus::laws {
 namespace {
-
-auto at(Index i) { return static_cast<std::size_t>(i); }
 
 /// `size` numbers of `from`, row-major, as a matrix.
 template <class T> MatrixX<T> matrix(const T* from, Index rows, Index columns) {
@@ -20,7 +20,7 @@ template <class T> typename Parts<T>::Constraint rows_of(Index row, Index rows, 
   typename Parts<T>::Constraint c;
   for (Index r = row; r < row + rows; ++r) {
     c.from.push_back(r);
-    c.diagonal.push_back(d.diagonal[at(r)]);
+    c.diagonal.push_back(d.diagonal[z(r)]);
   }
   for (auto block : d.blocks) {
     if (block.row < row || block.row >= row + rows) continue;
@@ -38,7 +38,7 @@ template <class T> std::vector<Index> parents_first(const Parts<T>& parts) {
     const std::size_t before = order.size();
     for (std::size_t i = 0; i < placed.size(); ++i) {
       const Index up = parts.bodies[i].parent;
-      if (placed[i] || (up != ground && !placed[at(up)])) continue;
+      if (placed[i] || (up != ground && !placed[z(up)])) continue;
       placed[i] = true;
       order.push_back(static_cast<Index>(i));
     }
@@ -51,13 +51,13 @@ template <class T>
 std::shared_ptr<Structure> structure(const Parts<T>& parts, const std::vector<Index>& order, const std::vector<Index>& name) {
   auto s = std::make_shared<Structure>();
   for (const Index i : order) {
-    const auto& b = parts.bodies[at(i)];
-    s->add_body(b.parent == ground ? ground : name[at(b.parent)], b.S.cols());
+    const auto& b = parts.bodies[z(i)];
+    s->add_body(b.parent == ground ? ground : name[z(b.parent)], b.S.cols());
   }
   for (const auto& c : parts.constraints) {
     std::vector<Index> bodies;
-    for (const auto& l : c.links) bodies.push_back(name[at(l.body)]);
-    if (c.links.empty()) s->add_joint_constraint(c.rows(), name[at(c.joint)]);
+    for (const auto& l : c.links) bodies.push_back(name[z(l.body)]);
+    if (c.links.empty()) s->add_joint_constraint(c.rows(), name[z(c.joint)]);
     else s->add_link_constraint(c.rows(), bodies);
   }
   return s;
@@ -66,11 +66,11 @@ std::shared_ptr<Structure> structure(const Parts<T>& parts, const std::vector<In
 template <class T> void fill_bodies(const Parts<T>& parts, const std::vector<Index>& order, Problem<T>& p) {
   std::size_t k = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto& b = parts.bodies[at(order[i])];
+    const auto& b = parts.bodies[z(order[i])];
     p.H[i] = b.H;
     for (Index j = 0; j < b.S.cols(); ++j, ++k) {
       p.S[k] = b.S.col(j);
-      p.armature[k] = b.armature[at(j)];
+      p.armature[k] = b.armature[z(j)];
     }
   }
 }
@@ -97,15 +97,15 @@ template <class T> void fill_rows(const Parts<T>& parts, Second<T>& out) {
 }  // namespace
 
 template <class T> Index Parts<T>::add_body(Index parent, MatrixX<T> S) {
-  std::vector<T> armature(at(S.cols()), T(0));
+  std::vector<T> armature(z(S.cols()), T(0));
   bodies.push_back({parent, std::move(S), std::move(armature), Matrix6<T>::Constant(T(0))});
   return count() - 1;
 }
 
 template <class T> typename Parts<T>::Constraint& Parts<T>::add_hard(Index rows) {
   Constraint& c = constraints.emplace_back();
-  c.from.assign(at(rows), added);
-  c.diagonal.assign(at(rows), T(0));
+  c.from.assign(z(rows), added);
+  c.diagonal.assign(z(rows), T(0));
   return c;
 }
 
@@ -123,19 +123,19 @@ template <class T> Parts<T> apart(const Problem<T>& p, const Damping<T>& d) {
   const Structure& s = *p.structure;
   Parts<T> out;
   for (Index i = 0; i < s.bodies(); ++i) {
-    const Index index = out.add_body(s.parent[at(i)], MatrixX<T>(6, s.dofs(i)));
+    const Index index = out.add_body(s.parent[z(i)], MatrixX<T>(6, s.dofs(i)));
     auto& b = out.body(index);
-    b.H = p.H[at(i)];
+    b.H = p.H[z(i)];
     for (Index k = 0; k < s.dofs(i); ++k) {
-      b.S.col(k) = p.S[at(s.first_dof[at(i)] + k)];
-      b.armature[at(k)] = p.armature[at(s.first_dof[at(i)] + k)];
+      b.S.col(k) = p.S[z(s.first_dof[z(i)] + k)];
+      b.armature[z(k)] = p.armature[z(s.first_dof[z(i)] + k)];
     }
   }
   for (const auto& e : s.link_constraints) {
     auto& c = out.constraints.emplace_back(rows_of(e.row, e.rows, d));
     for (const auto& l : e.links) {
       MatrixX<T> K(e.rows, 6);
-      for (Index r = 0; r < e.rows; ++r) K.row(r) = p.K[at(l.first + r)].transpose();
+      for (Index r = 0; r < e.rows; ++r) K.row(r) = p.K[z(l.first + r)].transpose();
       c.links.push_back({l.body, std::move(K)});
     }
   }
@@ -152,7 +152,7 @@ template <class T> Parts<T> apart(const Problem<T>& p, const Damping<T>& d) {
 template <class T> Second<T> together(const Parts<T>& parts) {
   const std::vector<Index> order = parents_first(parts);
   std::vector<Index> name(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) name[at(order[k])] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < order.size(); ++k) name[z(order[k])] = static_cast<Index>(k);
   Second<T> out{{Problem<T>(structure(parts, order, name)), {}}, {}};
   fill_bodies(parts, order, out.numbers.problem);
   fill_rows(parts, out);
@@ -165,5 +165,6 @@ template <class T> Second<T> together(const Parts<T>& parts) {
   template Second<T> together(const Parts<T>&);
 DELASSUS_PARTS(double)
 DELASSUS_PARTS(Rational)
+#undef DELASSUS_PARTS
 
 }  // namespace delassus::laws

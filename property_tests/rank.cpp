@@ -46,14 +46,14 @@ std::vector<Slider> sliders() {
   };
 }
 
-struct Said {
+struct OfRank {
   Report report;
   std::vector<Index> dependent;
   MatrixX<double> f;
 };
 
 /// Rows in units of `unit`, accelerations times `scale`.
-Said asked(const OperatorRow& row, const Slider& k, const Damping<double>& damping, double unit = 1, double scale = 1) {
+OfRank of_rank(const OperatorRow& row, const Slider& k, const Damping<double>& damping, double unit = 1, double scale = 1) {
   const Index m = static_cast<Index>(k.K.size());
   Structure s;
   s.add_body(ground, 3);
@@ -67,7 +67,7 @@ Said asked(const OperatorRow& row, const Slider& k, const Damping<double>& dampi
   op->analyze(p.structure);
   static_cast<void>(op->update(p, Damping<double>::uniform(m, 1)));
   static_cast<void>(op->update_damping(damping));
-  Said said{{}, op->dependent_rows(), MatrixX<double>::Constant(m, 1, 0.75)};
+  OfRank said{{}, op->dependent_rows(), MatrixX<double>::Constant(m, 1, 0.75)};
   if (k.a.empty()) return said;
   MatrixX<double> a(m, 1);
   for (Index r = 0; r < m; ++r) a(r, 0) = scale * k.a[static_cast<std::size_t>(r)];
@@ -80,7 +80,7 @@ Said asked(const OperatorRow& row, const Slider& k, const Damping<double>& dampi
 std::string words(const Report& r) { return std::string(name(r.status)) + " at " + std::to_string(r.where); }
 
 /// f in other units.
-bool answers(const Said& said, const std::vector<double>& f, double unit) {
+bool answers(const OfRank& said, const std::vector<double>& f, double unit) {
   for (std::size_t r = 0; r < f.size(); ++r)
     if (said.f(static_cast<Index>(r), 0) != f[r] * unit) return false;
   return true;
@@ -88,7 +88,7 @@ bool answers(const Said& said, const std::vector<double>& f, double unit) {
 
 std::string slider_wrong(const OperatorRow& row, const Slider& k, double unit, double scale) {
   const bool refused = row.name == "dense_refined" && !k.dependent.empty();
-  const Said said = asked(row, k, Damping<double>::uniform(static_cast<Index>(k.K.size()), k.damping), unit, scale);
+  const OfRank said = of_rank(row, k, Damping<double>::uniform(static_cast<Index>(k.K.size()), k.damping), unit, scale);
   if (row.decides_rank && said.dependent != k.dependent) return "other rows left out";
   if (k.a.empty()) return {};
   const Report expected = refused ? Report{Status::lost_pivot, k.dependent[0]} : Report{k.status, k.where};
@@ -101,7 +101,7 @@ std::string singular_block_wrong(const OperatorRow& row, const Slider& k) {
   Damping<double> damping = Damping<double>::uniform(3, 0);
   damping.blocks = {{0, MatrixX<double>::Constant(2, 2, -0.5)}};
   damping.blocks[0].R_inverse.diagonal().setConstant(0.5);
-  const Report r = asked(row, k, damping).report;
+  const Report r = of_rank(row, k, damping).report;
   return r.status == Status::lost_pivot && r.where == 1 ? "" : words(r);
 }
 

@@ -6,6 +6,8 @@
 
 namespace delassus::laws {
 
+template <class T> using Dense = MatrixX<Wide<T>>;
+
 /// A status other than ok where an answer was promised.
 struct Broken : std::runtime_error {
   Broken(const char* phase, const Report& r)

@@ -8,8 +8,6 @@
 
 namespace delassus::laws {
 
-template <class T> using Dense = MatrixX<Wide<T>>;
-
 /// x on the rows of the second description; 0 on added ones. Shapes m×k → from.size()×k.
 template <class T> [[nodiscard]] MatrixX<T> spread(const MatrixX<T>& x, const std::vector<Index>& from) {
   MatrixX<T> out = MatrixX<T>::Constant(static_cast<Index>(from.size()), x.cols(), T(0));

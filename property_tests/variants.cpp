@@ -24,9 +24,6 @@ std::vector<Entry> constraints(const Structure& s) {
   return all;
 }
 
-/// What coefficients of a variant are computed in before they are rounded once.
-template <class T> using Wide = std::conditional_t<ScalarTraits<T>::exact, T, Quad>;
-
 /// X with G X = B, G symmetric positive definite and small. Shapes n×n, n×k.
 template <class W> MatrixX<W> solve_small(MatrixX<W> G, MatrixX<W> B) {
   const Index n = G.rows();
@@ -238,5 +235,6 @@ template <class T> Damping<T> first_constraint_hard(const Structure& s, const Da
 DELASSUS_VARIANTS(double)
 DELASSUS_VARIANTS(Rational)
 DELASSUS_VARIANTS(PrimeField)
+#undef DELASSUS_VARIANTS
 
 }  // namespace delassus::laws

@@ -7,6 +7,9 @@
 
 namespace delassus::laws {
 
+/// What the errors of a scalar are computed in, and coefficients before they are rounded once.
+template <class T> using Wide = std::conditional_t<ScalarTraits<T>::exact, T, Quad>;
+
 template <class T> struct Variant {
   Problem<T> problem;
   Damping<T> damping;

@@ -5,14 +5,12 @@
 #include <map>
 #include <type_traits>
 
+#include "algorithms/kit/index.h"
 #include "generators/random.h"
+#include "property_tests/variants.h"
 
 namespace delassus::laws {
 namespace {
-
-template <class T> using Wide = std::conditional_t<ScalarTraits<T>::exact, T, Quad>;
-
-auto at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class To, class From> MatrixX<To> as(const MatrixX<From>& x) {
   MatrixX<To> y(x.rows(), x.cols());
@@ -22,14 +20,14 @@ template <class To, class From> MatrixX<To> as(const MatrixX<From>& x) {
 }
 
 std::vector<bool> with_joint_rows(const Structure& s) {
-  std::vector<bool> has(at(s.bodies()), false);
-  for (const auto& c : s.joint_constraints) has[at(c.body)] = true;
+  std::vector<bool> has(z(s.bodies()), false);
+  for (const auto& c : s.joint_constraints) has[z(c.body)] = true;
   return has;
 }
 
 bool has_armature(const Problem<double>& p, Index i) {
   const auto& first = p.structure->first_dof;
-  return std::any_of(p.armature.begin() + first[at(i)], p.armature.begin() + first[at(i) + 1], [](double a) { return a != 0; });
+  return std::any_of(p.armature.begin() + first[z(i)], p.armature.begin() + first[z(i) + 1], [](double a) { return a != 0; });
 }
 
 /// A motion and its inverse, 6×6: rotation by an integer quaternion over its squared length, small translation.
@@ -55,7 +53,7 @@ template <class T> std::vector<Index> trees(const Parts<T>& parts) {
   std::vector<Index> root(parts.bodies.size());
   for (std::size_t i = 0; i < root.size(); ++i) {
     const Index up = parts.bodies[i].parent;
-    root[i] = up == ground ? static_cast<Index>(i) : root[at(up)];
+    root[i] = up == ground ? static_cast<Index>(i) : root[z(up)];
   }
   return root;
 }
@@ -64,24 +62,24 @@ template <class T> std::vector<Index> trees(const Parts<T>& parts) {
 template <class W> MatrixX<W> annihilator(const MatrixX<W>& S) {
   MatrixX<W> G = S.transpose();
   const Index n = G.rows();
-  std::vector<Index> pivot(at(n), -1);
+  std::vector<Index> pivot(z(n), -1);
   std::vector<bool> taken(6, false);
   for (Index k = 0; k < n; ++k) {
     Index best = 0;
     W largest(0);
     for (Index j = 0; j < 6; ++j)
-      if (!taken[at(j)] && abs(W(G(k, j))) > largest) largest = abs(W(G(k, best = j)));
-    pivot[at(k)] = best;
-    taken[at(best)] = true;
+      if (!taken[z(j)] && abs(W(G(k, j))) > largest) largest = abs(W(G(k, best = j)));
+    pivot[z(k)] = best;
+    taken[z(best)] = true;
     G.row(k) /= W(G(k, best));
     for (Index i = 0; i < n; ++i)
       if (i != k) G.row(i) -= (W(G(i, best)) * G.row(k)).eval();
   }
   MatrixX<W> N = MatrixX<W>::Constant(6 - n, 6, W(0));
   for (Index j = 0, row = 0; j < 6; ++j) {
-    if (taken[at(j)]) continue;
+    if (taken[z(j)]) continue;
     N(row, j) = W(1);
-    for (Index k = 0; k < n; ++k) N(row, pivot[at(k)]) = -G(k, j);
+    for (Index k = 0; k < n; ++k) N(row, pivot[z(k)]) = -G(k, j);
     ++row;
   }
   return N;
@@ -102,7 +100,7 @@ template <class T> Second<T> world_moved(const Problem<T>& p, const Damping<T>& 
   std::map<Index, Motion<W>> motions;
   for (const Index r : root) motions.try_emplace(r, generators::Random(seed + static_cast<std::uint64_t>(r)));
   for (Index i = 0; i < parts.count(); ++i) {
-    const Motion<W>& m = motions.at(root[at(i)]);
+    const Motion<W>& m = motions.at(root[z(i)]);
     auto& b = parts.body(i);
     b.S = as<T, W>(m.X.lazyProduct(as<W, T>(b.S)));
     const MatrixX<W> H = as<W, T>(MatrixX<T>(b.H)).lazyProduct(m.inverse);
@@ -111,7 +109,7 @@ template <class T> Second<T> world_moved(const Problem<T>& p, const Damping<T>& 
       for (Index c = 0; c < r; ++c) b.H(c, r) = b.H(r, c);
   }
   for (auto& c : parts.constraints)
-    for (auto& l : c.links) l.K = as<T, W>(as<W, T>(l.K).lazyProduct(motions.at(root[at(l.body)]).inverse));
+    for (auto& l : c.links) l.K = as<T, W>(as<W, T>(l.K).lazyProduct(motions.at(root[z(l.body)]).inverse));
   return together(parts);
 }
 
@@ -120,7 +118,7 @@ std::vector<Index> free_bases(const Problem<double>& p) {
   const std::vector<bool> rows = with_joint_rows(s);
   std::vector<Index> out;
   for (Index i = 0; i < s.bodies(); ++i)
-    if (s.parent[at(i)] == ground && s.dofs(i) == 6 && !rows[at(i)] && !has_armature(p, i) &&
+    if (s.parent[z(i)] == ground && s.dofs(i) == 6 && !rows[z(i)] && !has_armature(p, i) &&
         std::find(s.parent.begin(), s.parent.end(), i) != s.parent.end())
       out.push_back(i);
   return out;
@@ -133,7 +131,7 @@ template <class T> Second<T> rerooted(const Problem<T>& p, const Damping<T>& d, 
   const Index base = bases[seed % bases.size()];
   std::vector<Index> others;
   for (Index i = 0; i < parts.count(); ++i)
-    if (root[at(i)] == base && i != base) others.push_back(i);
+    if (root[z(i)] == base && i != base) others.push_back(i);
   const Index first = others[(seed / 2 + others.size() / 2) % others.size()];
 
   // The joint of body i on the path now carries its parent.
@@ -148,21 +146,21 @@ template <class T> Second<T> rerooted(const Problem<T>& p, const Damping<T>& d, 
     b.S = -joint.S;
     b.armature = joint.armature;
     b.parent = path[k - 1];
-    carried[at(path[k - 1])] = path[k];
+    carried[z(path[k - 1])] = path[k];
   }
   auto& b = parts.body(first);
   b.S = free.S;
   b.armature = free.armature;
   b.parent = ground;
   for (auto& c : parts.constraints)
-    if (c.links.empty()) c.joint = carried[at(c.joint)];
+    if (c.links.empty()) c.joint = carried[z(c.joint)];
   return together(parts);
 }
 
 bool can_split(const Structure& s) {
   const std::vector<bool> rows = with_joint_rows(s);
   for (Index i = 0; i < s.bodies(); ++i)
-    if (!rows[at(i)] && s.dofs(i) > 1) return true;
+    if (!rows[z(i)] && s.dofs(i) > 1) return true;
   return false;
 }
 
@@ -172,11 +170,11 @@ template <class T> Second<T> joints_split(const Problem<T>& p, const Damping<T>&
   for (Index i = 0; i < p.structure->bodies(); ++i) {
     const MatrixX<T> S = parts.body(i).S;
     const std::vector<T> armature = parts.body(i).armature;
-    if (rows[at(i)] || S.cols() < 2) continue;
+    if (rows[z(i)] || S.cols() < 2) continue;
     Index up = parts.body(i).parent;
     for (Index k = 0; k + 1 < S.cols(); ++k) {
       up = parts.add_body(up, S.col(k));
-      parts.body(up).armature = {armature[at(k)]};
+      parts.body(up).armature = {armature[z(k)]};
     }
     auto& b = parts.body(i);
     b.parent = up;
@@ -206,7 +204,7 @@ template <class T> Second<T> stiffened(const Problem<T>& p, const Damping<T>& d,
   const std::vector<bool> rows = with_joint_rows(*p.structure);
   std::vector<Index> lockable;
   for (Index i = 0; i < parts.count(); ++i)
-    if (parts.body(i).S.cols() > (rows[at(i)] ? 1 : 0)) lockable.push_back(i);
+    if (parts.body(i).S.cols() > (rows[z(i)] ? 1 : 0)) lockable.push_back(i);
   if (lockable.empty()) return together(parts);
   const Index locked = lockable[seed % lockable.size()];
   auto& b = parts.body(locked);
@@ -247,7 +245,7 @@ std::vector<Index> joints_to_cut(const Problem<double>& p) {
   const std::vector<bool> rows = with_joint_rows(*p.structure);
   std::vector<Index> out;
   for (Index i = 0; i < p.structure->bodies(); ++i)
-    if (p.structure->dofs(i) < 6 && !rows[at(i)] && !has_armature(p, i)) out.push_back(i);
+    if (p.structure->dofs(i) < 6 && !rows[z(i)] && !has_armature(p, i)) out.push_back(i);
   return out;
 }
 
@@ -277,5 +275,6 @@ template <class T> Second<T> joint_cut(const Problem<T>& p, const Damping<T>& d,
   template Second<T> joint_cut(const Problem<T>&, const Damping<T>&, std::uint64_t);
 DELASSUS_VARIANTS(double)
 DELASSUS_VARIANTS(Rational)
+#undef DELASSUS_VARIANTS
 
 }  // namespace delassus::laws

@@ -215,5 +215,6 @@ template <class T> Second<T> in_units(const Problem<T>& p, const Damping<T>& d, 
   template Second<T> in_units(const Problem<T>&, const Damping<T>&, const Units<T>&);
 DELASSUS_VARIANTS(double)
 DELASSUS_VARIANTS(Rational)
+#undef DELASSUS_VARIANTS
 
 }  // namespace delassus::laws

@@ -37,7 +37,7 @@ struct Block {
   MatrixX<double> R_inverse;
 };
 /// 1 on the diagonal, 0 within the blocks.
-Damping<double> damped(std::initializer_list<Block> blocks) {
+Damping<double> with_block(std::initializer_list<Block> blocks) {
   Damping<double> d = Damping<double>::uniform(6, 1);
   for (const Block& b : blocks) {
     std::fill_n(d.diagonal.begin() + b.row, b.R_inverse.rows(), 0.0);
@@ -61,12 +61,12 @@ std::vector<Wrong> wrong_ones() {
   std::vector<Wrong> all;
   for (const Index row : {0, 2, 4, 5})
     for (const double value : {-0.5, -std::numeric_limits<double>::denorm_min(), nan, -inf})
-      all.push_back({"a diagonal entry", with_entry(damped({}), row, value), row});
-  all.push_back({"of two entries the first", with_entry(with_entry(damped({}), 1, nan), 4, -1), 1});
-  all.push_back({"an entry beside a block", with_entry(damped({{3, good}}), 5, -1), 5});
-  all.push_back({"an entry before a block", with_entry(damped({{3, square({-1, 0, 0, 1})}}), 0, -1), 0});
+      all.push_back({"a diagonal entry", with_entry(with_block({}), row, value), row});
+  all.push_back({"of two entries the first", with_entry(with_entry(with_block({}), 1, nan), 4, -1), 1});
+  all.push_back({"an entry beside a block", with_entry(with_block({{3, good}}), 5, -1), 5});
+  all.push_back({"an entry before a block", with_entry(with_block({{3, square({-1, 0, 0, 1})}}), 0, -1), 0});
   for (const Index row : {0, 1, 3}) {
-    const auto block = [&](const char* what, const MatrixX<double>& B) { all.push_back({what, damped({{row, B}}), row}); };
+    const auto block = [&](const char* what, const MatrixX<double>& B) { all.push_back({what, with_block({{row, B}}), row}); };
     block("an asymmetric block", square({2, 1, 1 + 0x1p-40, 2}));
     block("a block with a triangle alone", square({2, 1, 0, 2}));
     block("an indefinite block", square({1, 2, 2, 1}));
@@ -78,14 +78,14 @@ std::vector<Wrong> wrong_ones() {
       block("a block with an entry not finite below", square({2, 0, x, 2}));
       block("a block with an entry not finite above", square({2, x, 0, 2}));
     }
-    for (const Index beside : {row, row + 1}) all.push_back({"a row damped twice", with_entry(damped({{row, good}}), beside, 0.5), beside});
+    for (const Index beside : {row, row + 1}) all.push_back({"a row damped twice", with_entry(with_block({{row, good}}), beside, 0.5), beside});
   }
-  all.push_back({"a block of one negative number", damped({{5, square({-1})}}), 5});
-  all.push_back({"the last of three blocks", damped({{0, three}, {3, good}, {5, square({-1})}}), 5});
-  all.push_back({"the middle of three blocks", damped({{0, three}, {3, square({1, 2, 2, 1})}, {5, square({1})}}), 3});
+  all.push_back({"a block of one negative number", with_block({{5, square({-1})}}), 5});
+  all.push_back({"the last of three blocks", with_block({{0, three}, {3, good}, {5, square({-1})}}), 5});
+  all.push_back({"the middle of three blocks", with_block({{0, three}, {3, square({1, 2, 2, 1})}, {5, square({1})}}), 3});
   MatrixX<double> far = three;
   far(2, 0) = 0.5;
-  all.push_back({"a block asymmetric in its corner", damped({{0, far}}), 0});
+  all.push_back({"a block asymmetric in its corner", with_block({{0, far}}), 0});
   return all;
 }
 
@@ -96,17 +96,17 @@ struct Right {
 
 std::vector<Right> right_ones() {
   const double tiny = std::numeric_limits<double>::denorm_min(), huge = std::numeric_limits<double>::max();
-  return {{"all ones", damped({})},
+  return {{"all ones", with_block({})},
           {"hard rows", Damping<double>::uniform(6, 0)},
           {"minus zero", Damping<double>::uniform(6, -0.0)},
-          {"the smallest number", with_entry(damped({}), 1, tiny)},
-          {"the largest number", with_entry(damped({}), 1, huge)},
-          {"rows that are off", with_entry(with_entry(damped({}), 0, inf), 4, inf)},
-          {"a row of a block that is off", with_entry(damped({{1, square({2, 1, 1, 2})}}), 1, inf)},
-          {"a singular block", damped({{1, square({1, 1, 1, 1})}})},
-          {"a block of zeros", damped({{3, square({0, 0, 0, 0})}})},
-          {"a block singular but for rounding", damped({{1, square({1, 1, 1, 1 - eps})}})},
-          {"three blocks", damped({{0, square({2, 1, 0, 1, 2, 1, 0, 1, 2})}, {3, square({2, 1, 1, 2})}, {5, square({1})}})}};
+          {"the smallest number", with_entry(with_block({}), 1, tiny)},
+          {"the largest number", with_entry(with_block({}), 1, huge)},
+          {"rows that are off", with_entry(with_entry(with_block({}), 0, inf), 4, inf)},
+          {"a row of a block that is off", with_entry(with_block({{1, square({2, 1, 1, 2})}}), 1, inf)},
+          {"a singular block", with_block({{1, square({1, 1, 1, 1})}})},
+          {"a block of zeros", with_block({{3, square({0, 0, 0, 0})}})},
+          {"a block singular but for rounding", with_block({{1, square({1, 1, 1, 1 - eps})}})},
+          {"three blocks", with_block({{0, square({2, 1, 0, 1, 2, 1, 0, 1, 2})}, {3, square({2, 1, 1, 2})}, {5, square({1})}})}};
 }
 
 /// Operator and what it is asked with.
@@ -150,7 +150,7 @@ bool same_bits(const MatrixX<double>& x, const MatrixX<double>& y) { return laws
 std::string wrong_damping_taken(const OperatorRow& row) {
   Asked fresh(row), used(row);
   MatrixX<double> expected, y;
-  const Damping<double> good = damped({{0, square({2, 1, 0, 1, 2, 1, 0, 1, 2})}});
+  const Damping<double> good = with_block({{0, square({2, 1, 0, 1, 2, 1, 0, 1, 2})}});
   static_cast<void>(fresh.op->update(fresh.p, good));
   static_cast<void>(fresh.ask(expected));
   const std::string name = std::string(row.name) + ": ";

@@ -17,34 +17,34 @@ MatrixX<Quad> quad(const MatrixX<double>& X) {
 }
 
 using P = const Problem<double>&;
-using D = const Damping<double>&;
-using X = const MatrixX<double>&;
+using Damped = const Damping<double>&;
+using Sides = const MatrixX<double>&;
 
-bool definition_trusts(P p, D) { return p.structure->dofs() <= 250 && p.structure->rows <= 400; }
-MatrixX<Quad> definition_apply(P p, D d, X f) { return dense_apply(dense(p.cast<Quad>(), d.cast<Quad>()), quad(f)); }
-MatrixX<Quad> definition_solve(P p, D d, X a) { return dense_solve(dense(p.cast<Quad>(), d.cast<Quad>()), quad(a)); }
+bool definition_trusts(P p, Damped) { return p.structure->dofs() <= 250 && p.structure->rows <= 400; }
+MatrixX<Quad> definition_apply(P p, Damped d, Sides f) { return dense_apply(dense(p.cast<Quad>(), d.cast<Quad>()), quad(f)); }
+MatrixX<Quad> definition_solve(P p, Damped d, Sides a) { return dense_solve(dense(p.cast<Quad>(), d.cast<Quad>()), quad(a)); }
 
-bool maximal_trusts(P p, D) {
+bool maximal_trusts(P p, Damped) {
   const Structure& s = *p.structure;
   return 12 * s.bodies() + s.dofs() + s.rows <= 600;
 }
-MatrixX<Quad> maximal_row_apply(P p, D d, X f) {
+MatrixX<Quad> maximal_row_apply(P p, Damped d, Sides f) {
   MatrixX<Quad> a = maximal_apply(p.cast<Quad>(), d.cast<Quad>(), quad(f));
   Zeros(p, d).clear_apply(f, a);
   return a;
 }
-MatrixX<Quad> maximal_row_solve(P p, D d, X a) {
+MatrixX<Quad> maximal_row_solve(P p, Damped d, Sides a) {
   MatrixX<Quad> f = maximal_solve(p.cast<Quad>(), d.cast<Quad>(), quad(a));
   Zeros(p, d).clear_solve(a, f);
   return f;
 }
 
-MatrixX<Quad> cholmod_row_apply(P p, D d, X f) {
+MatrixX<Quad> cholmod_row_apply(P p, Damped d, Sides f) {
   MatrixX<Quad> a = kkt_cholmod_apply(p, d, f);
   Zeros(p, d).clear_apply(f, a);
   return a;
 }
-MatrixX<Quad> cholmod_row_solve(P p, D d, X a) {
+MatrixX<Quad> cholmod_row_solve(P p, Damped d, Sides a) {
   MatrixX<Quad> f = kkt_cholmod_solve(p, d, a);
   Zeros(p, d).clear_solve(a, f);
   return f;

@@ -11,11 +11,6 @@ namespace {
 std::string text(const double& x) { return number_text(x); }
 template <class T> std::string text(const T& x) { return number_text(static_cast<double>(x)); }
 
-template <class T> bool finite(const T& x) {
-  using std::isfinite;
-  return isfinite(x);
-}
-
 [[noreturn]] void refuse(const std::string& element, const std::string& problem, const std::string& accepted) {
   throw ModelError("contact problem", element, problem, accepted);
 }
@@ -43,11 +38,11 @@ template <class T> void check_sizes(const ContactProblem<T>& p) {
 template <class T> void check_row(const ContactProblem<T>& p, const ConeRows& c, Index r, bool off) {
   const auto k = static_cast<std::size_t>(r);
   const std::string row = "row " + std::to_string(r);
-  if (!finite(p.free_velocity[r]) || !finite(p.target[r])) refuse(row, "a velocity is not finite", "finite numbers [m/s]");
+  if (!is_finite(p.free_velocity[r]) || !is_finite(p.target[r])) refuse(row, "a velocity is not finite", "finite numbers [m/s]");
   if (ScalarTraits<T>::is_infinite(p.R_inverse[k]) != off) refuse(row, "is off, or on, other than its group", "R⁻¹ = ∞ in all rows of a group or in none");
-  if (!off && !(finite(p.R_inverse[k]) && p.R_inverse[k] >= T(0))) refuse(row, "R⁻¹ = " + text(p.R_inverse[k]), "0 or more [1/kg]");
+  if (!off && !(is_finite(p.R_inverse[k]) && p.R_inverse[k] >= T(0))) refuse(row, "R⁻¹ = " + text(p.R_inverse[k]), "0 or more [1/kg]");
   const bool tangent = c.cone == Cone::coulomb && r != c.row;
-  if (!(finite(p.friction[k]) && p.friction[k] >= T(0))) refuse(row, "μ = " + text(p.friction[k]), "0 or more");
+  if (!(is_finite(p.friction[k]) && p.friction[k] >= T(0))) refuse(row, "μ = " + text(p.friction[k]), "0 or more");
   if (!tangent && p.friction[k] > T(0)) refuse(row, "μ = " + text(p.friction[k]) + " in a row that is no tangent", "0 there");
   if (c.cone == Cone::box && !(p.low[k] <= p.high[k])) refuse(row, "low = " + text(p.low[k]) + ", high = " + text(p.high[k]), "low ≤ high [N s]");
 }
@@ -55,7 +50,7 @@ template <class T> void check_row(const ContactProblem<T>& p, const ConeRows& c,
 template <class T> void check_matrix(const MatrixX<T>& G) {
   for (Index c = 0; c < G.cols(); ++c)
     for (Index r = 0; r < G.rows(); ++r) {
-      if (!finite(G(r, c))) refuse("G(" + std::to_string(r) + ", " + std::to_string(c) + ")", "is not finite", "finite numbers [1/kg]");
+      if (!is_finite(G(r, c))) refuse("G(" + std::to_string(r) + ", " + std::to_string(c) + ")", "is not finite", "finite numbers [1/kg]");
       if (r > c && G(r, c) != G(c, r))
         refuse("G(" + std::to_string(r) + ", " + std::to_string(c) + ")", "is " + text(G(r, c)) + ", across the diagonal " + text(G(c, r)),
                "a symmetric matrix; its symmetric part (G + Gᵀ)/2 is another problem, which the caller may take and say so");

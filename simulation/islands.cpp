@@ -4,11 +4,10 @@
 #include <numeric>
 
 #include "algorithms/kit/counted.h"
+#include "algorithms/kit/index.h"
 
 namespace delassus::simulation {
 namespace {
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 Index first_of(std::vector<Index>& first, Index tree) {
   while (first[z(tree)] != tree) tree = first[z(tree)] = first[z(first[z(tree)])];

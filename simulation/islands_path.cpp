@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "algorithms/kit/counted.h"
+#include "algorithms/kit/index.h"
 
 namespace delassus::simulation {
 namespace {
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 /// Trees by the first tree of their set, in ascending order.
 std::map<Index, std::vector<Index>> sets_of(const std::vector<Index>& first) {

@@ -9,21 +9,16 @@ template <class T> struct Cell {
   T natural{}, penetration{}, cone{}, complementarity{};
 };
 
-template <class T> bool finite(const T& x) {
-  using std::isfinite;
-  return isfinite(x);
-}
-
 // One row with bounds; ∓∞ where there is none.
 template <class T> Cell<T> of_row(const T& lambda, const T& u, const T& low, const T& high, const T& gamma) {
   using std::abs;
   Cell<T> r;
   if (gamma > T(0)) r.natural = gamma * abs(lambda - std::min(std::max(T(lambda - u / gamma), low), high));
-  else if (lambda > low && u > T(0)) r.natural = finite(low) ? T(0) : u;  // an impulse that moves nothing may be any
-  else if (lambda < high && u < T(0)) r.natural = finite(high) ? T(0) : T(-u);
+  else if (lambda > low && u > T(0)) r.natural = is_finite(low) ? T(0) : u;  // an impulse that moves nothing may be any
+  else if (lambda < high && u < T(0)) r.natural = is_finite(high) ? T(0) : T(-u);
   r.cone = std::max(T(0), std::max(T(low - lambda), T(lambda - high)));
   const T beyond = u > T(0) ? T(lambda - low) : T(high - lambda);  // the way to the bound that this velocity asks for
-  if (finite(u > T(0) ? low : high)) r.complementarity = abs(u) * abs(beyond);
+  if (is_finite(u > T(0) ? low : high)) r.complementarity = abs(u) * abs(beyond);
   else r.penetration = abs(u);
   return r;
 }

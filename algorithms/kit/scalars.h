@@ -27,6 +27,11 @@ template <class T> struct ScalarTraits {
   static bool is_infinite(const T& x) { using std::isfinite; return x > T(0) && !isfinite(x); }
 };
 
+template <class T> [[nodiscard]] bool is_finite(const T& x) {
+  using std::isfinite;
+  return isfinite(x);
+}
+
 /// Unit roundoff of a scalar; 0 where it is exact.
 template <class T> inline constexpr double unit_roundoff = ScalarTraits<T>::exact ? 0.0 : 0x1p-53;
 template <> inline constexpr double unit_roundoff<float> = 0x1p-24;

@@ -12,11 +12,6 @@
 namespace delassus {
 namespace {
 
-template <class T> bool finite(const T& x) {
-  using std::isfinite;
-  return isfinite(x);
-}
-
 template <class T> bool negative(const T& x) {
   if constexpr (!ScalarTraits<T>::ordered) return false;  // a field without an order
   else return x < T(0);
@@ -56,7 +51,7 @@ template <class T> bool right(const MatrixX<T>& B, T* scratch) {
   const Index n = B.rows();
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j <= i; ++j)
-      if (!finite(B(i, j)) || !(B(i, j) == B(j, i))) return false;
+      if (!is_finite(B(i, j)) || !(B(i, j) == B(j, i))) return false;
   if constexpr (!ScalarTraits<T>::ordered) return true;
   else {
     std::copy_n(B.data(), n * n, scratch);
@@ -70,7 +65,7 @@ template <class T> void check_block(const MatrixX<T>& B, const std::string& elem
                      "a square matrix; give the block of R^-1 of its rows");
   for (Index i = 0; i < B.rows(); ++i)
     for (Index j = 0; j < B.cols(); ++j)
-      if (!finite(B(i, j))) throw ModelError("", element, "entry is not finite", "finite numbers [1/kg]; correct it");
+      if (!is_finite(B(i, j))) throw ModelError("", element, "entry is not finite", "finite numbers [1/kg]; correct it");
   for (Index i = 0; i < B.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (!(B(i, j) == B(j, i)))
@@ -103,7 +98,7 @@ template <class T> bool all_right(const std::vector<T>& x) {
       wrong += (size - y) + y * 0.0;
     }
     bool right = wrong[0] + wrong[1] + wrong[2] + wrong[3] == 0;
-    for (; r < x.size(); ++r) right = right && finite(x[r]) && !negative(x[r]);
+    for (; r < x.size(); ++r) right = right && is_finite(x[r]) && !negative(x[r]);
     return right;
   }
 }
@@ -145,7 +140,7 @@ template <class T> void Damping<T>::check_sizes(const Structure& s) const {
 template <class T> Report Damping<T>::judged(std::vector<T>& scratch) const {
   if (blocks.empty() && all_right(diagonal)) return {};
   for (std::size_t r = 0; r < diagonal.size(); ++r)
-    if (!(finite(diagonal[r]) || ScalarTraits<T>::is_infinite(diagonal[r])) || negative(diagonal[r]))
+    if (!(is_finite(diagonal[r]) || ScalarTraits<T>::is_infinite(diagonal[r])) || negative(diagonal[r]))
       return {Status::bad_damping, static_cast<Index>(r)};
   for (const Block& b : blocks) {
     if (!right(b.R_inverse, scratch.data())) return {Status::bad_damping, b.row};

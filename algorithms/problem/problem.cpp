@@ -8,13 +8,8 @@
 
 namespace delassus {
 namespace {
-template <class T> bool finite(const T& x) {
-  using std::isfinite;
-  return isfinite(x);
-}
-
 template <class U, class T> U convert(const T& x) {
-  if constexpr (ScalarTraits<U>::exact) require(finite(x), "cast: an exact scalar holds finite numbers only");
+  if constexpr (ScalarTraits<U>::exact) require(is_finite(x), "cast: an exact scalar holds finite numbers only");
   return scalar_cast<U>(x);
 }
 

@@ -9,13 +9,13 @@
 #include <map>
 #include <sstream>
 
+#include "algorithms/kit/index.h"
+
 namespace delassus::bench {
 namespace {
 
 using Kind = Constraint::Kind;
 using reference::mujoco_name;
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 std::string numbers(const auto& x) {
   std::ostringstream s;

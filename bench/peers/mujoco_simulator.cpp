@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "algorithms/kit/index.h"
 #include "bench/peers/mujoco_scene.h"
 #include "bench/peers/simulator.h"
 
@@ -14,8 +15,6 @@ namespace {
 
 using Kind = Constraint::Kind;
 using Vector = VectorX<double>;
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 class Mujoco final : public Simulator {
  public:

@@ -4,7 +4,7 @@
 #include "algorithms/kit/counted.h"
 #include "property_tests/unit/absence.h"
 
-namespace delassus {
+namespace delassus::absence_test {
 namespace {
 
 using namespace stepping;
@@ -116,4 +116,4 @@ TEST(Absence, every_effect_has_a_caller) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::absence_test

@@ -7,7 +7,7 @@
 #include "property_tests/single_step.h"
 #include "property_tests/unit/absence.h"
 
-namespace delassus {
+namespace delassus::absent_instructions_test {
 namespace {
 
 using namespace stepping;
@@ -145,10 +145,10 @@ void print_prices() {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::absent_instructions_test
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  if (argc == 2 && std::string(argv[1]) == "--markdown") return delassus::print_prices(), 0;
+  if (argc == 2 && std::string(argv[1]) == "--markdown") return delassus::absent_instructions_test::print_prices(), 0;
   return RUN_ALL_TESTS();
 }

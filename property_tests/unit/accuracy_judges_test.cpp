@@ -7,7 +7,7 @@
 #include "generators/build.h"
 #include "generators/families.h"
 
-namespace delassus::accuracy {
+namespace delassus::accuracy::accuracy_judges_test {
 namespace {
 
 /// m bodies of mass 1/2^k on sliders along x, each with a row on it: A = diag(2^k) + R⁻¹.
@@ -97,4 +97,4 @@ TEST(Digits, AreThoseOfTheError) {
 }
 
 }  // namespace
-}  // namespace delassus::accuracy
+}  // namespace delassus::accuracy::accuracy_judges_test

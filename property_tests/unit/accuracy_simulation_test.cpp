@@ -4,7 +4,7 @@
 #include "bench/accuracy_simulation.h"
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus::accuracy {
+namespace delassus::accuracy::accuracy_simulation_test {
 namespace {
 
 using namespace stepping;
@@ -265,4 +265,4 @@ TEST(SimulationAccuracy, OptionsChangeWhatIsRun) {
 }
 
 }  // namespace
-}  // namespace delassus::accuracy
+}  // namespace delassus::accuracy::accuracy_simulation_test

@@ -9,7 +9,7 @@
 #include "property_tests/allocations.h"
 #include "property_tests/laws.h"
 
-namespace delassus {
+namespace delassus::analyze_test {
 namespace {
 
 TEST(Analyze, AllocatesAFewTimesWhateverTheSize) {
@@ -32,4 +32,4 @@ TEST(Analyze, AllocatesAFewTimesWhateverTheSize) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::analyze_test

@@ -7,7 +7,7 @@
 #include "property_tests/unit/four_bars.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::assembly_joints_test {
 namespace {
 
 using namespace four_bars;
@@ -115,4 +115,4 @@ TEST(Assembly, limits_do_not_break_couplings) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::assembly_joints_test

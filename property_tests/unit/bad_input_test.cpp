@@ -8,7 +8,7 @@
 #include "models/scene.h"
 #include "models/urdf.h"
 
-namespace delassus {
+namespace delassus::bad_input_test {
 namespace {
 
 std::string write(const std::string& name, const std::string& text) {
@@ -242,4 +242,4 @@ TEST(BadScene, unknown_names) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::bad_input_test

@@ -17,7 +17,7 @@
 #include "generators/build.h"
 #include "generators/families.h"
 
-namespace delassus::bench {
+namespace delassus::bench::bench_judges_test {
 namespace {
 
 /// Adds as often as told, and takes as long; answers solve with a status.
@@ -397,4 +397,4 @@ TEST(Results, LawsThatHoldAreNotFailed) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::bench_judges_test

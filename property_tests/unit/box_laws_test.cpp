@@ -4,7 +4,7 @@
 #include "models/box_contacts.h"
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::box_laws_test {
 namespace {
 
 using namespace contact_test;
@@ -148,4 +148,4 @@ TEST(ContactLaws, edges_apart_by_more_than_the_margin_give_nothing) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::box_laws_test

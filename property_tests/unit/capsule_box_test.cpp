@@ -4,7 +4,7 @@
 #include "models/capsule_box.h"
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::capsule_box_test {
 namespace {
 
 using namespace contact_test;
@@ -100,4 +100,4 @@ TEST(CapsuleBox, FlatOnAFaceItKeepsItsPointsUnderRounding) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::capsule_box_test

@@ -12,7 +12,7 @@
 #include "generators/build.h"
 #include "generators/families.h"
 
-namespace delassus {
+namespace delassus::choose_test {
 namespace {
 
 generators::Built made(const char* family, Index n) { return generators::build(generators::find_family(family).make(n, 1)); }
@@ -192,4 +192,4 @@ TEST(Auto, answers_bit_for_bit_as_the_rows_it_chose) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::choose_test

@@ -10,7 +10,7 @@
 #include "property_tests/unit/collision_witness.h"
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::collision_witness_test {
 namespace {
 
 using namespace contact_test;
@@ -86,4 +86,4 @@ TEST(CollisionWitness, bullet) {
 #endif
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::collision_witness_test

@@ -11,7 +11,7 @@
 #include "generators/families.h"
 #include "property_tests/route.h"
 
-namespace delassus {
+namespace delassus::columns_test {
 namespace {
 
 Report report(Status status, Index where, int steps, double size, std::string_view rung) {
@@ -98,4 +98,4 @@ TEST(Columns, InLanesEachForItself) {
   }
 }
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::columns_test

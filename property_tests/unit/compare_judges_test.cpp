@@ -8,7 +8,7 @@
 #include "bench/figure2.h"
 #include "bench/instruction_gate.h"
 
-namespace delassus::bench {
+namespace delassus::bench::compare_judges_test {
 namespace {
 
 using nlohmann::json;
@@ -130,4 +130,4 @@ TEST(Swimmers, WhatIsWrittenIsRead) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::compare_judges_test

@@ -6,7 +6,7 @@
 #include "algorithms/kit/quad.h"
 #include "simulation/cones.h"
 
-namespace delassus::simulation {
+namespace delassus::simulation::cones_test {
 namespace {
 
 struct Case {
@@ -117,4 +117,4 @@ TEST(Cones, DefectsVanishExactlyInside) {
 }
 
 }  // namespace
-}  // namespace delassus::simulation
+}  // namespace delassus::simulation::cones_test

@@ -5,7 +5,7 @@
 #include "algorithms/mechanism/loop_closing.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::constraints_test {
 namespace {
 
 using namespace unit;
@@ -229,4 +229,4 @@ TEST(rows, contact_is_normal_first) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::constraints_test

@@ -6,7 +6,7 @@
 #include "models/hull.h"
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::contact_ground_test {
 namespace {
 
 using namespace contact_test;
@@ -217,4 +217,4 @@ TEST(ContactLaws, pairs_with_hulls_are_tested_or_counted) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::contact_ground_test

@@ -3,7 +3,7 @@
 
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::contact_laws_test {
 namespace {
 
 using namespace contact_test;
@@ -91,4 +91,4 @@ TEST(ContactLaws, contacts_move_with_the_scene) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::contact_laws_test

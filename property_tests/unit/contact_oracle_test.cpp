@@ -9,7 +9,7 @@
 #include "reference/contact_residual.h"
 #include "simulation/solvers.h"
 
-namespace delassus {
+namespace delassus::contact_oracle_test {
 namespace {
 
 using namespace simulation;
@@ -157,4 +157,4 @@ TEST(ContactOracle, SolversFindOneOfItsSolutions) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::contact_oracle_test

@@ -7,10 +7,11 @@
 #include "property_tests/laws.h"
 #include "simulation/solvers.h"
 
-namespace delassus {
-namespace laws {
+namespace delassus::laws {
 std::int64_t (*allocation_count)() = nullptr;  // set by count_allocations
 }
+
+namespace delassus::contact_piles_test {
 namespace {
 
 using namespace simulation;
@@ -117,4 +118,4 @@ TEST(ContactPiles, WarmStartIsUsed) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::contact_piles_test

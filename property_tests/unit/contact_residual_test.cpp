@@ -6,7 +6,7 @@
 #include "reference/contact_residual.h"
 #include "simulation/residual.h"
 
-namespace delassus {
+namespace delassus::contact_residual_test {
 namespace {
 
 using namespace simulation;
@@ -156,4 +156,4 @@ TEST(ContactResidual, WrongOnesAreNoticed) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::contact_residual_test

@@ -3,7 +3,7 @@
 
 #include "simulation/solvers.h"
 
-namespace delassus::simulation {
+namespace delassus::simulation::contact_solvers_test {
 namespace {
 
 // A block of mass m on a plane, one contact, G = 1/m: falling with w, sliding with s.
@@ -111,4 +111,4 @@ TEST(ContactSolvers, WrongProblemsAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace delassus::simulation
+}  // namespace delassus::simulation::contact_solvers_test

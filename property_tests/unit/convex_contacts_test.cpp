@@ -5,7 +5,7 @@
 #include "models/hull.h"
 #include "property_tests/unit/contact_pairs.h"
 
-namespace delassus {
+namespace delassus::convex_contacts_test {
 namespace {
 
 using namespace contact_test;
@@ -311,4 +311,4 @@ TEST(ConvexContacts, a_hull_of_a_box_is_a_box) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::convex_contacts_test

@@ -4,7 +4,7 @@
 #include "property_tests/defects.h"
 #include "property_tests/search.h"
 
-namespace delassus::laws {
+namespace delassus::laws::defects_test {
 namespace {
 
 Found found_in(const DefectRow& d) {
@@ -48,4 +48,4 @@ TEST(Defects, HaveDifferentNamesAndRightOperatorsThatExist) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::defects_test

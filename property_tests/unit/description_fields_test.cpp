@@ -7,7 +7,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/described.h"
 
-namespace delassus {
+namespace delassus::description_fields_test {
 namespace {
 
 using namespace described;
@@ -109,4 +109,4 @@ TEST(Description, mimics_follow_the_product_of_their_chain) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::description_fields_test

@@ -6,7 +6,7 @@
 #include "property_tests/unit/described.h"
 #include "reference/urdf_witness.h"
 
-namespace delassus {
+namespace delassus::description_test {
 namespace {
 
 using namespace described;
@@ -140,4 +140,4 @@ TEST(Description, a_moving_base_is_a_joint_of_the_file) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::description_test

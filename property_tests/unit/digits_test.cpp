@@ -17,7 +17,7 @@
 #include "models/scene.h"
 #include "reference/definition.h"
 
-namespace delassus::digits {
+namespace delassus::digits::digits_test {
 namespace {
 
 constexpr int runs = 400;
@@ -251,4 +251,4 @@ TEST(Digits, NumericalOutcomesAreReports) {
 }
 
 }  // namespace
-}  // namespace delassus::digits
+}  // namespace delassus::digits::digits_test

@@ -12,7 +12,7 @@ namespace delassus::laws {
 std::int64_t (*allocation_count)() = nullptr;  // set by count_allocations
 }
 
-namespace delassus {
+namespace delassus::dynamics_test {
 namespace {
 
 using namespace unit;
@@ -273,4 +273,4 @@ TEST(dynamics, what_is_wrong_is_said) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::dynamics_test

@@ -5,7 +5,7 @@
 #include "generators/families.h"
 #include "property_tests/plan_model.h"
 
-namespace delassus {
+namespace delassus::elimination_test {
 namespace {
 
 TEST(Elimination, PlansAreWhatTheModelSays) {
@@ -45,4 +45,4 @@ TEST(Elimination, TheModelNoticesWrongPlans) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::elimination_test

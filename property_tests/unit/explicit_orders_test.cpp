@@ -9,7 +9,7 @@
 #include "algorithms/kit/test_scalars.h"
 #include "algorithms/operators/operators.h"
 
-namespace delassus {
+namespace delassus::explicit_orders_test {
 namespace {
 
 Problem<Counted> broom(Index trunk, Index arm, Index arms) {
@@ -101,4 +101,4 @@ INSTANTIATE_TEST_SUITE_P(Explicit, Orders,
                          [](const auto& of) { return std::string(of.param.op); });
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::explicit_orders_test

@@ -8,7 +8,7 @@
 #include "models/urdf_check.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::field_test {
 namespace {
 
 const std::string sphere_of_0_1 = R"(<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>)";
@@ -279,4 +279,4 @@ TEST(Field, a_robot_file_is_a_scene) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::field_test

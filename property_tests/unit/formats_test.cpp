@@ -17,7 +17,7 @@
 #include "property_tests/verdict.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::formats_test {
 namespace {
 
 using laws::Verdict;
@@ -302,4 +302,4 @@ TEST(Formats, the_comparison_sees_every_seeded_difference) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::formats_test

@@ -12,7 +12,7 @@
 #include "generators/families.h"
 #include "reference/definition.h"
 
-namespace delassus::generators {
+namespace delassus::generators::generators_test {
 namespace {
 
 std::vector<Spec> gate_specs() {
@@ -224,4 +224,4 @@ TEST(Generators, EveryClassOfProblemsOccurs) {
 }
 
 }  // namespace
-}  // namespace delassus::generators
+}  // namespace delassus::generators::generators_test

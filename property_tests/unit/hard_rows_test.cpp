@@ -10,7 +10,7 @@
 #include "property_tests/verdict.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::hard_rows_test {
 namespace {
 
 struct Said {
@@ -172,4 +172,4 @@ TEST(HardRows, CassieUndamped) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::hard_rows_test

@@ -7,7 +7,7 @@
 #include "algorithms/kit/test_scalars.h"
 #include "property_tests/verdict.h"
 
-namespace delassus {
+namespace delassus::householder_test {
 namespace {
 
 using laws::judge;
@@ -162,4 +162,4 @@ TEST(Householder, EveryRowKeepsItsOwnAccuracy) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::householder_test

@@ -8,7 +8,7 @@
 #include "models/contacts.h"
 #include "models/hull.h"
 
-namespace delassus {
+namespace delassus::hull_test {
 namespace {
 
 constexpr double eps = 0x1p-53;
@@ -286,4 +286,4 @@ TEST(ZeroSize, gives_each_point_once) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::hull_test

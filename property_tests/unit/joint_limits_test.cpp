@@ -5,7 +5,7 @@
 #include "property_tests/unit/path_sums.h"
 #include "property_tests/unit/sdf_text.h"
 
-namespace delassus {
+namespace delassus::joint_limits_test {
 namespace {
 
 using namespace four_bars;
@@ -69,4 +69,4 @@ TEST(JointLimits, of_several_freedoms_are_each_their_own) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::joint_limits_test

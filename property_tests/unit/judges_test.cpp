@@ -18,10 +18,11 @@
 #include "reference/reference.h"
 #include "reference/sensitivity.h"
 
-namespace delassus {
+namespace delassus::judges_test {
 namespace {
 
 using namespace reference::cases;
+using reference::cases::Matrix;
 using reference::ReferenceRow;
 using reference::references;
 using reference::Sensitivity;
@@ -128,9 +129,9 @@ TEST(Judges, RefinedBoundIsTheLargestForce) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::judges_test
 
-namespace delassus::generators {
+namespace delassus::generators::judges_test {
 namespace {
 
 struct Share {
@@ -250,9 +251,9 @@ TEST(Judges, ConstraintsSeeRelativeMotionAlone) {
 }
 
 }  // namespace
-}  // namespace delassus::generators
+}  // namespace delassus::generators::judges_test
 
-namespace delassus::laws {
+namespace delassus::laws::judges_test {
 namespace {
 
 Outcome outcome(double ratio, const char* skipped = nullptr) { return {"law", "operator", "case", skipped, {ratio, "bound", -1, {}}}; }
@@ -296,4 +297,4 @@ TEST(Judges, EveryLawIsAskedAndAnExceptionIsAFailure) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::judges_test

@@ -4,7 +4,7 @@
 #include "property_tests/kernels.h"
 #include "property_tests/reuse.h"
 
-namespace delassus::laws {
+namespace delassus::laws::kernels_test {
 namespace {
 
 TEST(Kernels, GiveTheNumbersOfTheDefinition) {
@@ -20,4 +20,4 @@ TEST(Kernels, GiveTheNumbersOfTheDefinition) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::kernels_test

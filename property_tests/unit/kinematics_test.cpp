@@ -6,7 +6,7 @@
 
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::kinematics_test {
 namespace {
 
 using namespace unit;
@@ -265,4 +265,4 @@ TEST(integrate, free_body_turns_and_moves_on_a_circle) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::kinematics_test

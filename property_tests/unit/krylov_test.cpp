@@ -3,7 +3,7 @@
 
 #include "property_tests/krylov.h"
 
-namespace delassus::laws {
+namespace delassus::laws::krylov_test {
 namespace {
 
 TEST(Krylov, KnownSpectra) {
@@ -11,4 +11,4 @@ TEST(Krylov, KnownSpectra) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::krylov_test

@@ -9,7 +9,7 @@
 #include "generators/build.h"
 #include "generators/families.h"
 
-namespace delassus {
+namespace delassus::ladder_test {
 namespace {
 
 struct Solver {
@@ -160,4 +160,4 @@ TEST(Ladder, MisuseAndNaN) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::ladder_test

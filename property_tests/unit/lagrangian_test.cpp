@@ -20,7 +20,7 @@
 #include "reference/lagrangian_sketch.h"
 #include "reference/sensitivity.h"
 
-namespace delassus::unit {
+namespace delassus::unit::lagrangian_test {
 namespace {
 
 using laws::Verdict;
@@ -343,4 +343,4 @@ TEST(LagrangianPage, ReferenceUsesNoSpatialAlgebra) {
 }
 
 }  // namespace
-}  // namespace delassus::unit
+}  // namespace delassus::unit::lagrangian_test

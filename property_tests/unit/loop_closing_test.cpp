@@ -9,7 +9,7 @@
 #include "property_tests/unit/four_bars.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::loop_closing_test {
 namespace {
 
 using namespace four_bars;
@@ -227,4 +227,4 @@ TEST(Assembly, whole_robots_and_boxes_are_held) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::loop_closing_test

@@ -12,7 +12,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::mesh_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -280,4 +280,4 @@ TEST(Meshes, stand_stretched_where_their_link_puts_them) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::mesh_test

@@ -8,7 +8,7 @@
 #include "algorithms/operators/cg.h"
 #include "algorithms/operators/lcaba.h"
 
-namespace delassus {
+namespace delassus::misuse_test {
 namespace {
 
 TEST(Misuse, IsRefusedByEveryOperator) {
@@ -169,4 +169,4 @@ TEST(Where, SaysWhetherItIsARowOrADegreeOfFreedom) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::misuse_test

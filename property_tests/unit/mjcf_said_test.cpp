@@ -3,7 +3,7 @@
 
 #include "property_tests/unit/mjcf_text.h"
 
-namespace delassus {
+namespace delassus::mjcf_said_test {
 namespace {
 
 using namespace mjcf_test;
@@ -97,4 +97,4 @@ TEST(Mjcf, equalities_that_a_flag_switches_off_are_left_out_with_a_warning) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::mjcf_said_test

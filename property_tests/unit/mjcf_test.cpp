@@ -7,7 +7,7 @@
 #include "models/urdf.h"
 #include "property_tests/unit/mjcf_text.h"
 
-namespace delassus {
+namespace delassus::mjcf_test {
 namespace {
 
 using namespace mjcf_test;
@@ -112,4 +112,4 @@ TEST(Mjcf, the_same_robot_in_urdf_has_the_same_M) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::mjcf_test

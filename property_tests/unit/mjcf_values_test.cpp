@@ -9,7 +9,7 @@
 #include "property_tests/unit/mjcf_text.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::mjcf_values_test {
 namespace {
 
 using namespace mjcf_test;
@@ -252,4 +252,4 @@ TEST(Mjcf, a_weld_of_sites_holds_their_axes) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::mjcf_values_test

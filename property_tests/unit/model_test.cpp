@@ -8,7 +8,7 @@
 
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::model_test {
 namespace {
 
 using namespace unit;
@@ -284,4 +284,4 @@ TEST(assembly, moves_trees_together_and_leaves_the_others) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::model_test

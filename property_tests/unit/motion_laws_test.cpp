@@ -4,7 +4,7 @@
 #include "property_tests/newton_euler.h"
 #include "property_tests/unit/motion_cases.h"
 
-namespace delassus {
+namespace delassus::motion_laws_test {
 namespace {
 
 using namespace unit;
@@ -314,4 +314,4 @@ TEST(motion_laws, sizes_are_checked) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::motion_laws_test

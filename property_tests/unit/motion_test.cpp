@@ -5,7 +5,7 @@
 
 #include "property_tests/unit/motion_cases.h"
 
-namespace delassus {
+namespace delassus::motion_test {
 namespace {
 
 using namespace unit;
@@ -100,4 +100,4 @@ TEST(motion, weight_is_the_slope_of_the_potential_energy_exactly) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::motion_test

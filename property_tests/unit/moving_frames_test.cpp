@@ -5,7 +5,7 @@
 #include "algorithms/kit/test_scalars.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::moving_frames_test {
 namespace {
 
 using namespace unit;
@@ -175,4 +175,4 @@ TEST(moving, seeded_defects_are_noticed) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::moving_frames_test

@@ -14,7 +14,7 @@
 #include "property_tests/unit/path_sums.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::mujoco_test {
 namespace {
 
 using reference::MujocoWitness;
@@ -294,4 +294,4 @@ TEST(Mujoco, refuses_what_it_cannot_represent) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::mujoco_test

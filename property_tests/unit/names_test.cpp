@@ -7,7 +7,7 @@
 
 #include "algorithms/errors/closest.h"
 
-namespace delassus {
+namespace delassus::names_test {
 namespace {
 
 /// By its definition, over all ways: a letter left out, put in, exchanged, or two neighbours swapped.
@@ -54,4 +54,4 @@ TEST(Names, the_nearest_is_offered_when_at_most_a_third_differs) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::names_test

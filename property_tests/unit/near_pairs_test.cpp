@@ -7,7 +7,7 @@
 #include "models/near_pairs.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::near_pairs_test {
 namespace {
 
 using V3 = Vector3<double>;
@@ -102,4 +102,4 @@ TEST(NearPairs, cost_is_near_linear_however_they_are_spread) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::near_pairs_test

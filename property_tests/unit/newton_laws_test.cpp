@@ -8,7 +8,7 @@
 #include "reference/definition.h"
 #include "simulation/solvers/primal_newton.h"
 
-namespace delassus {
+namespace delassus::newton_laws_test {
 namespace {
 
 using namespace simulation;
@@ -200,4 +200,4 @@ TEST(NewtonLaws, MassRatiosDoNotStallIt) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::newton_laws_test

@@ -5,7 +5,7 @@
 #include "property_tests/one_solve.h"
 #include "property_tests/reuse.h"
 
-namespace delassus::laws {
+namespace delassus::laws::one_solve_test {
 namespace {
 
 std::vector<Case> cases() {
@@ -32,4 +32,4 @@ TEST(OneSolve, KktElimination) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::one_solve_test

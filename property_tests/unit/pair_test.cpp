@@ -10,7 +10,7 @@
 #include "property_tests/route.h"
 #include "reference/definition.h"
 
-namespace delassus::laws {
+namespace delassus::laws::pair_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -160,4 +160,4 @@ TEST(RowsThatComeAndGo, AllMayBeAway) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::pair_test

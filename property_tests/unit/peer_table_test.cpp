@@ -8,7 +8,7 @@
 #include "bench/uses.h"
 #include "reference/definition.h"
 
-namespace delassus::bench {
+namespace delassus::bench::peer_table_test {
 namespace {
 
 /// What is wrong with a peer.
@@ -172,4 +172,4 @@ TEST(Peers, ThePageIsThatOfTheFile) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::peer_table_test

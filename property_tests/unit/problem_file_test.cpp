@@ -9,7 +9,7 @@
 #include "simulation/problem_file.h"
 #include "simulation/solvers.h"
 
-namespace delassus {
+namespace delassus::problem_file_test {
 namespace {
 
 using namespace simulation;
@@ -148,4 +148,4 @@ TEST(ProblemFile, CollectionFromElsewhere) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::problem_file_test

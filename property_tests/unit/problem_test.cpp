@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace delassus {
+namespace delassus::problem_test {
 namespace {
 
 /// The message of the ModelError that `action` throws; empty when it throws none.
@@ -187,4 +187,4 @@ TEST(damping, refuses_what_is_not_positive_semidefinite) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::problem_test

@@ -5,7 +5,7 @@
 #include "property_tests/diagonal_rule.h"
 #include "property_tests/rank.h"
 
-namespace delassus::laws {
+namespace delassus::laws::rank_test {
 namespace {
 
 TEST(Rank, DependentRows) {
@@ -106,4 +106,4 @@ TEST(Rank, RefusalsOfWhatIsSolvedCanFail) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::rank_test

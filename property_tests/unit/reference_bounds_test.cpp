@@ -6,7 +6,7 @@
 #include "reference/reference.h"
 #include "reference/sensitivity.h"
 
-namespace delassus::reference {
+namespace delassus::reference::reference_bounds_test {
 namespace {
 
 using namespace cases;
@@ -74,4 +74,4 @@ TEST(Sensitivity, DirectFormulaIsAmplified) {
 }
 
 }  // namespace
-}  // namespace delassus::reference
+}  // namespace delassus::reference::reference_bounds_test

@@ -9,7 +9,7 @@
 #include "reference/reference.h"
 #include "reference/sensitivity.h"
 
-namespace delassus::reference {
+namespace delassus::reference::reference_test {
 namespace {
 
 using namespace cases;
@@ -297,4 +297,4 @@ TEST(KktCholmod, TenThousandBodies) {
 }
 
 }  // namespace
-}  // namespace delassus::reference
+}  // namespace delassus::reference::reference_test

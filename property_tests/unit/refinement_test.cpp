@@ -4,7 +4,7 @@
 #include "property_tests/refinement_model.h"
 #include "property_tests/reuse.h"
 
-namespace delassus::laws {
+namespace delassus::laws::refinement_test {
 namespace {
 
 TEST(Refinement, DoesWhatItsHeaderSays) {
@@ -19,4 +19,4 @@ TEST(Refinement, DoesWhatItsHeaderSays) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::refinement_test

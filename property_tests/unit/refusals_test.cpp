@@ -9,7 +9,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::refusals_test {
 namespace {
 
 struct Refusal {
@@ -288,4 +288,4 @@ TEST(Refusals, of_numbers_by_what_is_wrong_with_them) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::refusals_test

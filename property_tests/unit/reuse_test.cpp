@@ -6,7 +6,7 @@
 #include "property_tests/defects_wrong.h"
 #include "property_tests/reuse.h"
 
-namespace delassus::laws {
+namespace delassus::laws::reuse_test {
 namespace {
 
 TEST(Reuse, LeavesNoTrace) {
@@ -60,4 +60,4 @@ TEST(Reuse, MoreRowsThanFreedomsCanFail) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::reuse_test

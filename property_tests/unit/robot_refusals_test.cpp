@@ -8,7 +8,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::robot_refusals_test {
 namespace {
 
 struct Refusal {
@@ -189,4 +189,4 @@ TEST(RobotRefusals, mjcf) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::robot_refusals_test

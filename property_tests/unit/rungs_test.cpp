@@ -11,7 +11,7 @@
 #include "generators/families.h"
 #include "property_tests/verdict.h"
 
-namespace delassus {
+namespace delassus::rungs_test {
 namespace {
 
 struct Said {
@@ -207,4 +207,4 @@ TEST(Rungs, AnUpdateNamesTheRowThatNoRungCanDoWithout) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::rungs_test

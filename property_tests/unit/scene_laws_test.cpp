@@ -13,7 +13,7 @@
 #include "property_tests/unit/path_sums.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::scene_laws_test {
 namespace {
 
 using V3 = Vector3<double>;
@@ -275,4 +275,4 @@ TEST(SceneLaws, one_number_more_or_less_is_refused) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::scene_laws_test

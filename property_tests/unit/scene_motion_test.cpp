@@ -3,7 +3,7 @@
 
 #include "property_tests/unit/four_bars.h"
 
-namespace delassus {
+namespace delassus::scene_motion_test {
 namespace {
 
 using namespace four_bars;
@@ -78,4 +78,4 @@ TEST(SceneMotion, what_is_wrong_is_refused_with_its_line) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::scene_motion_test

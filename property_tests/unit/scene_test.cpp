@@ -11,7 +11,7 @@
 #include "models/scene.h"
 #include "models/swimmer.h"
 
-namespace delassus {
+namespace delassus::scene_test {
 namespace {
 
 constexpr double eps = 0x1p-53;
@@ -205,4 +205,4 @@ TEST(BoxContacts, crossed_edges_touch_in_one_point) {
 TEST(BoxContacts, apart_means_none) { EXPECT_TRUE(box_box(box(0.5, {0, 0, 1.1}), box(0.5, {0, 0, 0}), 1e-3).empty()); }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::scene_test

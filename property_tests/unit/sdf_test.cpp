@@ -6,7 +6,7 @@
 #include "property_tests/unit/sdf_text.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::sdf_test {
 namespace {
 
 using test::temporary;
@@ -239,4 +239,4 @@ TEST(Sdf, says_what_it_cannot_read) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::sdf_test

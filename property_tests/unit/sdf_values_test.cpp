@@ -10,7 +10,7 @@
 #include "property_tests/unit/path_sums.h"
 #include "property_tests/unit/sdf_text.h"
 
-namespace delassus {
+namespace delassus::sdf_values_test {
 namespace {
 
 using unit::ratio;
@@ -258,4 +258,4 @@ TEST(SdfValues, the_world_is_no_child) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::sdf_values_test

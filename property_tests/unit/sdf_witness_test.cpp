@@ -16,7 +16,7 @@
 #include "property_tests/unit/temporary.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::sdf_witness_test {
 namespace {
 
 using reference::parse_sdf_witness;
@@ -109,4 +109,4 @@ TEST(SdfWitness, says_what_is_wrong_and_what_it_does_not_serve) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::sdf_witness_test

@@ -8,7 +8,7 @@
 #include "models/segments.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::segments_test {
 namespace {
 
 using V3 = Vector3<double>;
@@ -65,4 +65,4 @@ TEST(Segments, parallel_ones_and_points) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::segments_test

@@ -8,7 +8,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::self_contacts_test {
 namespace {
 
 std::string link(const std::string& name, const std::string& box, double middle) {
@@ -112,4 +112,4 @@ TEST(SelfContacts, other_values_are_refused) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::self_contacts_test

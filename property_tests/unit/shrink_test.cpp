@@ -10,7 +10,7 @@
 #include "generators/families.h"
 #include "generators/shrink.h"
 
-namespace delassus::generators {
+namespace delassus::generators::shrink_test {
 namespace {
 
 bool in_class(const Spec& spec, std::string_view name) {
@@ -107,4 +107,4 @@ TEST(Shrink, SimplifiesWhatDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace delassus::generators
+}  // namespace delassus::generators::shrink_test

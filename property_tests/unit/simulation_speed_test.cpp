@@ -8,7 +8,7 @@
 #include "bench/own_simulator.h"
 #include "bench/simulation_speed.h"
 
-namespace delassus::bench {
+namespace delassus::bench::simulation_speed_test {
 namespace {
 
 using Vector = VectorX<double>;
@@ -261,4 +261,4 @@ TEST(SimulationSpeed, ThePageIsThatOfTheFile) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::simulation_speed_test

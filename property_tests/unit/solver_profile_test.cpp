@@ -7,7 +7,7 @@
 #include "bench/solver_profile.h"
 #include "bench/text.h"
 
-namespace delassus::bench {
+namespace delassus::bench::solver_profile_test {
 namespace {
 
 using namespace simulation;
@@ -145,4 +145,4 @@ TEST(SolverProfile, GeneratedProblemsAreWhatTheySay) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::solver_profile_test

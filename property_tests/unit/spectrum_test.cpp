@@ -11,7 +11,7 @@
 #include "generators/families.h"
 #include "reference/sensitivity.h"
 
-namespace delassus {
+namespace delassus::spectrum_test {
 namespace {
 
 // Loops within a tree and between trees, rows of several bodies and rows on joints, massless links, joints of 0 to 6 freedoms,
@@ -159,4 +159,4 @@ TEST(Spectrum, says_where_the_inertia_is_singular_and_what_it_cannot_be_asked) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::spectrum_test

@@ -14,7 +14,7 @@
 #include "property_tests/verdict.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::square_root_test {
 namespace {
 
 using laws::judge;
@@ -202,4 +202,4 @@ TEST(MassRoot, EnergyIsThatOfTheFactor) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::square_root_test

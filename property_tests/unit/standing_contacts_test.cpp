@@ -8,7 +8,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::standing_contacts_test {
 namespace {
 
 using V3 = Vector3<double>;
@@ -132,4 +132,4 @@ TEST(Standing, a_fixed_box_is_the_world_to_constraints_and_has_no_velocity) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::standing_contacts_test

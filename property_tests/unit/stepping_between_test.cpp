@@ -6,7 +6,7 @@
 #include "property_tests/unit/stepping_scenes.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::stepping_between_test {
 namespace {
 
 using namespace stepping;
@@ -100,4 +100,4 @@ TEST(Between, a_house_of_cards_of_two_grams_stands) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_between_test

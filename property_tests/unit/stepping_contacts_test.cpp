@@ -4,7 +4,7 @@
 #include "models/hull.h"
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_contacts_test {
 namespace {
 
 using namespace stepping;
@@ -298,4 +298,4 @@ TEST(Contacts, numbers_that_overflow_end_the_step_with_a_status) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_contacts_test

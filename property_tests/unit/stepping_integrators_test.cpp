@@ -5,7 +5,7 @@
 
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_integrators_test {
 namespace {
 
 using namespace stepping;
@@ -287,4 +287,4 @@ TEST(Integrators, rows_are_refused_by_the_names_of_their_effects) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_integrators_test

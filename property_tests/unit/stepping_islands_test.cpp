@@ -3,7 +3,7 @@
 
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_islands_test {
 namespace {
 
 using namespace stepping;
@@ -168,4 +168,4 @@ TEST(Islands, a_loop_that_is_touched_stays_closed) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_islands_test

@@ -10,10 +10,11 @@
 #include "simulation/islands.h"
 #include "simulation/solvers.h"
 
-namespace delassus {
-namespace laws {
+namespace delassus::laws {
 std::int64_t (*allocation_count)() = nullptr;  // set by count_allocations
 }
+
+namespace delassus::stepping_load_test {
 namespace {
 
 using namespace stepping;
@@ -105,4 +106,4 @@ TEST(Load, islands_are_made_in_the_time_of_their_bodies) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_load_test

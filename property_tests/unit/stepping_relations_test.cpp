@@ -3,7 +3,7 @@
 
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_relations_test {
 namespace {
 
 using namespace stepping;
@@ -152,4 +152,4 @@ TEST(Relations, painleves_rod) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_relations_test

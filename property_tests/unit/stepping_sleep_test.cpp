@@ -4,7 +4,7 @@
 #include "algorithms/kit/counted.h"
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_sleep_test {
 namespace {
 
 using namespace stepping;
@@ -219,4 +219,4 @@ TEST(Sleep, energy_of_falling_asleep_is_bounded) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_sleep_test

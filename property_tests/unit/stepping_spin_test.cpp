@@ -5,7 +5,7 @@
 
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_spin_test {
 namespace {
 
 using namespace stepping;
@@ -123,4 +123,4 @@ TEST(Spin, angular_momentum_goes_over) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_spin_test

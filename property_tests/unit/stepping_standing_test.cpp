@@ -7,7 +7,7 @@
 #include "property_tests/unit/stepping_scenes.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::stepping_standing_test {
 namespace {
 
 using namespace stepping;
@@ -98,4 +98,4 @@ TEST(Standing, who_stands_on_it_falls_asleep) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_standing_test

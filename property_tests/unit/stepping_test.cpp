@@ -4,7 +4,7 @@
 #include "algorithms/dynamics/dynamics.h"
 #include "property_tests/unit/stepping_scenes.h"
 
-namespace delassus {
+namespace delassus::stepping_test {
 namespace {
 
 using namespace stepping;
@@ -245,4 +245,4 @@ TEST(Stepping, motors_are_cut_at_their_effort) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_test

@@ -4,7 +4,7 @@
 #include "property_tests/unit/stepping_scenes.h"
 #include "simulation/yielding.h"
 
-namespace delassus {
+namespace delassus::stepping_yielding_test {
 namespace {
 
 using namespace stepping;
@@ -80,4 +80,4 @@ TEST(Yielding, explicit_steps_of_cassie_keep_their_order) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::stepping_yielding_test

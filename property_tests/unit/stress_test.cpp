@@ -12,7 +12,7 @@
 #include "property_tests/search.h"
 #include "reference/definition.h"
 
-namespace delassus::laws {
+namespace delassus::laws::stress_test {
 namespace {
 
 using generators::Spec;
@@ -183,4 +183,4 @@ TEST(Search, EveryLawIsChosenSometimes) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::stress_test

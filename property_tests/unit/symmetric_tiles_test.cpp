@@ -8,7 +8,7 @@
 #include "generators/build.h"
 #include "generators/families.h"
 
-namespace delassus {
+namespace delassus::symmetric_tiles_test {
 namespace {
 
 /// Whole numbers, so that sums are exact in any order and any scalar. Rows sum to at most 5 n beside a diagonal of 12 n − 5 at
@@ -209,4 +209,4 @@ TEST(CoupledRows, TilesOfTheseAlone) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::symmetric_tiles_test

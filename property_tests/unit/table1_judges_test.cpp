@@ -7,7 +7,7 @@
 #include "bench/table1_paper.h"
 #include "bench/text.h"
 
-namespace delassus::bench {
+namespace delassus::bench::table1_judges_test {
 namespace {
 
 void wait(double microseconds) {
@@ -174,4 +174,4 @@ TEST(TableOne, ThePaperHasThirteenRowsOfScenesWeHave) {
 }
 
 }  // namespace
-}  // namespace delassus::bench
+}  // namespace delassus::bench::table1_judges_test

@@ -9,7 +9,7 @@
 #include "models/scene.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::tolerances_test {
 namespace {
 
 constexpr double eps = 0x1p-53;
@@ -84,4 +84,4 @@ TEST(Tolerances, directions_that_are_parallel) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::tolerances_test

@@ -9,7 +9,7 @@
 #include "generators/families.h"
 #include "property_tests/unit/path_sums.h"
 
-namespace delassus {
+namespace delassus::tree_operators_test {
 namespace {
 
 template <class T> class ExactTrees : public testing::Test {};
@@ -124,4 +124,4 @@ TEST(TreeOperators, misuse_is_refused) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::tree_operators_test

@@ -9,7 +9,7 @@
 #include "models/urdf.h"
 #include "property_tests/unit/temporary.h"
 
-namespace delassus {
+namespace delassus::urdf_test {
 namespace {
 
 constexpr double eps = 0x1p-53;
@@ -132,4 +132,4 @@ TEST(Urdf, a_long_chain_does_not_exhaust_the_stack) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::urdf_test

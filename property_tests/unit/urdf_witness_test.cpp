@@ -12,7 +12,7 @@
 #include "property_tests/unit/path_sums.h"
 #include "reference/definition.h"
 
-namespace delassus {
+namespace delassus::urdf_witness_test {
 namespace {
 
 using reference::parse_urdf_witness;
@@ -151,4 +151,4 @@ TEST(UrdfWitness, refuses_what_is_no_urdf) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::urdf_witness_test

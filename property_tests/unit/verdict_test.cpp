@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace delassus::laws {
+namespace delassus::laws::verdict_test {
 namespace {
 
 constexpr double eps = unit_roundoff<double>;
@@ -77,4 +77,4 @@ TEST(Verdict, WorstKeepsTheLargerRatio) {
 }
 
 }  // namespace
-}  // namespace delassus::laws
+}  // namespace delassus::laws::verdict_test

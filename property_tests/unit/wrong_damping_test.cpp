@@ -6,7 +6,7 @@
 #include "algorithms/kit/test_scalars.h"
 #include "property_tests/wrong_damping.h"
 
-namespace delassus {
+namespace delassus::wrong_damping_test {
 namespace {
 
 TEST(WrongDamping, IsSaidByEveryOperator) {
@@ -83,4 +83,4 @@ TEST(WrongDamping, IsLookedForInLinearTime) {
 }
 
 }  // namespace
-}  // namespace delassus
+}  // namespace delassus::wrong_damping_test

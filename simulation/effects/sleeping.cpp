@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "algorithms/kit/counted.h"
+#include "algorithms/kit/index.h"
 
 namespace delassus::simulation {
 namespace {
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
