@@ -118,6 +118,7 @@ void keep_farthest(std::vector<ContactPoint>& found) {
 }
 
 void ground_contacts(const Placed& p, double height, double margin, std::vector<ContactPoint>& out) {
+  if (p.pose.translation[2] - (1 + 1e-12) * p.radius > height + margin) return;
   std::vector<ContactPoint> found;
   for (V3 x : low_points(p, margin)) {
     const double gap = x[2] - height;

@@ -63,8 +63,9 @@ template <class T> void ConePath<T>::plan(const std::vector<RowSet<T>>& rows) {
     else if (s.other == ground) structure_->add_link_constraint(s.directions, {s.body});
     else structure_->add_link_constraint(s.directions, {s.body, s.other});
   }
-  numbers_ = Problem<T>(structure_);
   mechanism_ = std::make_shared<Problem<double>>(structure_);
+  if constexpr (std::is_same_v<T, double>) numbers_ = mechanism_;
+  else numbers_ = std::make_shared<Problem<T>>(structure_);
   tree_ = std::make_unique<TreeOperators<T>>(structure_);
   const Index n = structure_->dofs(), m = structure_->rows;
   push_ = motion_ = more_ = MatrixX<T>::Constant(n, 1, T(0));
@@ -85,9 +86,10 @@ template <class T> void ConePath<T>::plan(const std::vector<RowSet<T>>& rows) {
 /// The numbers of M̂ and J, and of the cones.
 template <class T> void ConePath<T>::fill(const Moment<T>& now) {
   const Problem<T>& from = *now.problem;
-  numbers_.S = from.S, numbers_.H = from.H, numbers_.armature = from.armature;
-  std::copy(from.K.begin(), from.K.end(), numbers_.K.begin());
-  std::copy(from.joint_K.begin(), from.joint_K.end(), numbers_.joint_K.begin());
+  Problem<T>& numbers = *numbers_;
+  numbers.S = from.S, numbers.H = from.H, numbers.armature = from.armature;
+  std::copy(from.K.begin(), from.K.end(), numbers.K.begin());
+  std::copy(from.joint_K.begin(), from.joint_K.end(), numbers.joint_K.begin());
   std::size_t link = base_->link_constraints.size(), joint = base_->joint_constraints.size();
   Index row = base_->rows;
   for (Index r = 0; r < row; ++r) problem_.R_inverse[static_cast<std::size_t>(r)] = damping_.diagonal[static_cast<std::size_t>(r)];
@@ -100,24 +102,24 @@ template <class T> void ConePath<T>::fill(const Moment<T>& now) {
         const auto of = s.row(k);
         const Vector3<T> d = s.axes.col(of.axis);
         if (of.spins) {
-          numbers_.K[links[0].first + k] << of.arm * d, Vector3<T>::Constant(T(0));
-          if (s.other != ground) numbers_.K[links[1].first + k] << -of.arm * d, Vector3<T>::Constant(T(0));
+          numbers.K[links[0].first + k] << of.arm * d, Vector3<T>::Constant(T(0));
+          if (s.other != ground) numbers.K[links[1].first + k] << -of.arm * d, Vector3<T>::Constant(T(0));
         } else {
-          numbers_.K[links[0].first + k] << s.point.cross(d), d;
-          if (s.other != ground) numbers_.K[links[1].first + k] << -s.point_of_other.cross(d), -d;
+          numbers.K[links[0].first + k] << s.point.cross(d), d;
+          if (s.other != ground) numbers.K[links[1].first + k] << -s.point_of_other.cross(d), -d;
         }
         problem_.R_inverse[r + static_cast<std::size_t>(k)] = static_cast<double>(s.R_inverse);
         if (k > 0) problem_.friction[r + static_cast<std::size_t>(k)] = static_cast<double>(s.coefficient);
       }
     } else {
       const auto& to = structure_->joint_constraints[joint++];
-      for (Index k = 0; k < structure_->dofs(s.body); ++k) numbers_.joint_K[to.first + k] = T(k == s.dof ? s.side : 0);
+      for (Index k = 0; k < structure_->dofs(s.body); ++k) numbers.joint_K[to.first + k] = T(k == s.dof ? s.side : 0);
       problem_.low[r] = -static_cast<double>(s.effort), problem_.high[r] = static_cast<double>(s.effort);
     }
     row += s.directions;
   }
-  if constexpr (std::is_same_v<T, double>) *mechanism_ = numbers_;
-  else in_double(numbers_, *mechanism_);
+  if constexpr (!std::is_same_v<T, double>) in_double(numbers, *mechanism_);
+  tree_->take(numbers);
 }
 
 /// Impulses of the rows that were there in the last step.
@@ -151,7 +153,9 @@ template <class T> StepReport ConePath<T>::solve() {
     }
     if (!a.analyzed) a.solver->analyze(problem_);
     a.analyzed = true;
-    const SolverReport r = a.solver->solve(problem_, {.velocity = residual_}, lambda_);
+    SolverReport r;
+    if constexpr (std::is_same_v<T, double>) r = a.solver->solve(problem_, {.velocity = residual_}, lambda_, tree_.get());
+    else r = a.solver->solve(problem_, {.velocity = residual_}, lambda_);
     out.iterations += r.iterations;
     out.residual = r.residuals.natural;
     out.report.status = r.status;
@@ -172,8 +176,6 @@ template <class T> StepReport ConePath<T>::velocities(Moment<T>& now, VectorX<T>
   start_warm(now);
   StepReport out;
   out.path = name();
-  out.report = tree_->update(numbers_);
-  if (!out.report.ok()) return out;
   push_.col(0) = now.h * *now.force;
   out.report = tree_->M_inverse(push_, motion_);
   if (!out.report.ok()) return out;

@@ -58,8 +58,8 @@ template <class T> class ConePath final : public Path<T> {
   std::vector<Asked> solvers_;
   std::vector<std::array<Index, 4>> pattern_;  // per set of rows: kind, bodies, number
   std::shared_ptr<Structure> structure_;
-  Problem<T> numbers_;
-  std::shared_ptr<Problem<double>> mechanism_;
+  std::shared_ptr<Problem<T>> numbers_;
+  std::shared_ptr<Problem<double>> mechanism_;  // the same, in double
   std::unique_ptr<TreeOperators<T>> tree_;
   ContactProblem<double> problem_;
   VectorX<double> lambda_;

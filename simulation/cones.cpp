@@ -81,7 +81,8 @@ template <class T> ConeProjection<T> ConeProjection<T>::project(T* x, const T* m
     std::fill(x, x + rows, ScalarTraits<T>::nan());
     return {Region::apex, T(0)};
   }
-  return {Region::boundary, boundary(x, mu, rows)};
+  const T s = boundary(x, mu, rows);
+  return x[0] == T(0) ? ConeProjection<T>{Region::apex, T(0)} : ConeProjection<T>{Region::boundary, s};  // between both, but for rounding
 }
 
 template <class T> void ConeProjection<T>::derivative(const T* lambda, const T* mu, Index rows, T* d) const {

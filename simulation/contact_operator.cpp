@@ -16,51 +16,44 @@ template <class T> void ContactOperator<T>::analyze(const ContactProblem<T>& p) 
   off_.clear();
   off_.reserve(static_cast<std::size_t>(m_));
   diagonal_.resize(m_);
-  shifted_.diagonal = damping_.diagonal = p.R_inverse;
-  apply_.reset();
+  shifted_.diagonal = p.R_inverse;
+  tree_ = nullptr;
+  own_tree_.reset();
   solve_.reset();
   blocks_.reset();
   matrix_.resize(0, 0);
   if (!structure_) return;
-  apply_ = find_operator("aba_sweep").make<T>();
-  apply_->analyze(structure_);
-  apply_work_ = std::make_unique<Workspace<T>>(apply_->workspace());
   blocks_ = std::make_unique<DelassusBlocks<T>>(structure_);
 }
 
-template <class T> Report ContactOperator<T>::take_mechanism(const ContactProblem<T>& p) {
-  Report report = apply_->update(*p.mechanism, damping_);
-  if (report.ok()) report = blocks_->update(*p.mechanism);
-  if (report.ok()) report = blocks_->diagonal(diagonal_);
-  return report;
-}
-
-template <class T> Report ContactOperator<T>::update(const ContactProblem<T>& p) {
+template <class T> Report ContactOperator<T>::update(const ContactProblem<T>& p, TreeOperators<T>* tree) {
   require(fits(p), "ContactOperator::update: call analyze with a problem of this structure first");
   problem_ = &p;
   solve_current_ = matrix_current_ = false;
   off_.clear();
   for (Index r = 0; r < m_; ++r)
     if (ScalarTraits<T>::is_infinite(p.R_inverse[static_cast<std::size_t>(r)])) off_.push_back(r);
-  std::copy(p.R_inverse.begin(), p.R_inverse.end(), damping_.diagonal.begin());
   Report report;
-  if (structure_) report = take_mechanism(p);
-  else diagonal_ = p.G.diagonal();
+  if (structure_) {
+    if (tree == nullptr && !own_tree_) own_tree_ = std::make_unique<TreeOperators<T>>(structure_);
+    tree_ = tree != nullptr ? tree : own_tree_.get();
+    if (tree == nullptr) tree_->take(*p.mechanism);
+    report = blocks_->update(*tree_);
+    if (report.ok()) report = blocks_->diagonal(diagonal_);
+  } else {
+    diagonal_ = p.G.diagonal();
+  }
   for (Index r = 0; r < m_; ++r) diagonal_[r] += p.R_inverse[static_cast<std::size_t>(r)];
   switch_off(diagonal_.data());
   return report;
 }
 
 template <class T> void ContactOperator<T>::multiply(const T* lambda, T* u) {
-  using Column = Eigen::Map<VectorX<T>>;
-  if (structure_) {
-    const Report applied = apply_->apply(Eigen::Map<const MatrixX<T>>(lambda, m_, 1), Eigen::Map<MatrixX<T>>(u, m_, 1), *apply_work_);
-    if (!applied.ok()) Column(u, m_).setConstant(ScalarTraits<T>::nan());
-  } else {
-    Column out(u, m_);
-    out.noalias() = problem_->G * Eigen::Map<const VectorX<T>>(lambda, m_);
-    for (Index r = 0; r < m_; ++r) out[r] += problem_->R_inverse[static_cast<std::size_t>(r)] * lambda[r];
-  }
+  Eigen::Map<VectorX<T>> out(u, m_);
+  const Eigen::Map<const VectorX<T>> in(lambda, m_);
+  if (structure_) (void)tree_->delassus(in, out);  // NaN where M is singular
+  else out.noalias() = problem_->G * in;
+  for (Index r = 0; r < m_; ++r) out[r] += problem_->R_inverse[static_cast<std::size_t>(r)] * lambda[r];
   switch_off(u);
 }
 

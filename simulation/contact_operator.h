@@ -1,6 +1,6 @@
 // The operators that a contact solver asks for, of a problem that has a mechanism or a given matrix.
 //
-//   multiply   u = (G + R⁻¹) λ                            aba_sweep, or the matrix
+//   multiply   u = (G + R⁻¹) λ                            two sweeps with the factor of M, or the matrix
 //   factor     of G + R⁻¹ + diag(shift); solve with it     lcaba_refined (another R⁻¹ each time), or a dense LDLᵀ
 //   matrix     G, formed on demand: for solvers that sweep over its columns
 //   diagonal   of G + R⁻¹                                 DelassusBlocks, or the matrix
@@ -24,14 +24,17 @@ template <class T> class ContactOperator {
   void analyze(const ContactProblem<T>& p);
   /// Whether analyze has seen a problem of this structure and size.
   [[nodiscard]] bool fits(const ContactProblem<T>& p) const;
-  /// Numbers. The problem must live until the last call. Report: lost_pivot where M is singular, bad_damping.
-  [[nodiscard]] Report update(const ContactProblem<T>& p);
+  /// Numbers. The problem must live until the last call; so must `tree`, which has taken those of its mechanism, where one is given: its
+  /// factor serves here, too. Report: lost_pivot where M is singular.
+  [[nodiscard]] Report update(const ContactProblem<T>& p, TreeOperators<T>* tree = nullptr);
 
   [[nodiscard]] Index rows() const { return m_; }
   void multiply(const T* lambda, T* u);
   /// u = (G + R⁻¹) λ + g − target, 0 in rows that are off.
   void velocity(const T* lambda, T* u);
   [[nodiscard]] const VectorX<T>& diagonal() const { return diagonal_; }
+  /// Of the mechanism.
+  [[nodiscard]] TreeOperators<T>& tree() { return *tree_; }
   /// G, without R⁻¹, rows and columns that are off zero. Valid until the next update.
   [[nodiscard]] const MatrixX<T>& matrix();
 
@@ -41,7 +44,6 @@ template <class T> class ContactOperator {
   [[nodiscard]] Report solve(const T* b, T* x);
 
  private:
-  Report take_mechanism(const ContactProblem<T>& p);
   void switch_off(T* x) const {
     for (const Index r : off_) x[r] = T(0);
   }
@@ -50,10 +52,12 @@ template <class T> class ContactOperator {
   Index m_ = 0;
   std::vector<Index> off_;
   VectorX<T> diagonal_;
-  std::unique_ptr<Operator<T>> apply_, solve_;
-  std::unique_ptr<Workspace<T>> apply_work_, solve_work_;
+  TreeOperators<T>* tree_ = nullptr;
+  std::unique_ptr<TreeOperators<T>> own_tree_;
+  std::unique_ptr<Operator<T>> solve_;
+  std::unique_ptr<Workspace<T>> solve_work_;
   std::unique_ptr<DelassusBlocks<T>> blocks_;
-  Damping<T> shifted_, damping_;
+  Damping<T> shifted_;
   bool solve_current_ = false, matrix_current_ = false;
   MatrixX<T> matrix_, dense_, unit_;
 };

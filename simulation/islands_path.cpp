@@ -65,16 +65,15 @@ template <class T> typename IslandsPath<T>::Mover& IslandsPath<T>::mover_of(cons
 
 /// Who moves apart from whom: looked for again where islands or what rests are not those of the last step.
 template <class T> void IslandsPath<T>::group(const Moment<T>& now) {
-  resting_.assign(z(islands_.trees()), 0);
-  if (now.resting != nullptr)
-    for (Index t = 0; t < islands_.trees(); ++t) resting_[z(t)] = (*now.resting)[z(islands_.root_of(t))];
+  resting_.clear();  // none
+  for (Index t = 0; now.resting != nullptr && t < islands_.trees(); ++t) resting_.push_back((*now.resting)[z(islands_.root_of(t))]);
   if (resting_ == grouped_resting_ && islands_.islands() == grouped_) return;
   grouped_ = islands_.islands(), grouped_resting_ = resting_;
   moving_.clear();
   of_tree_.assign(z(islands_.trees()), nullptr);
   for (auto& [trees, m] : movers_) m->used = false;
   for (const auto& [first, trees] : sets_of(islands_.islands())) {
-    if (resting_[z(first)] != 0) continue;
+    if (!resting_.empty() && resting_[z(first)] != 0) continue;
     moving_.push_back(&mover_of(trees, now));
     for (const Index t : trees) of_tree_[z(t)] = moving_.back();
   }
@@ -138,11 +137,11 @@ template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, Vec
 }
 
 template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
-  deal(now);
+  if (!whole_ || islands_.trees() > 1 || now.resting != nullptr) deal(now);  // else one tree, one island
   if (whole_) {
     moved_ = 1;
     const StepReport out = moving_[0]->path->velocities(now, change, impulses);
-    if (out.ok()) hand_over(*moving_[0], now);
+    if (!moving_[0]->loops.empty() && out.ok()) hand_over(*moving_[0], now);
     return out;
   }
   Index rows = structure_->rows;

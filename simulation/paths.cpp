@@ -1,5 +1,7 @@
 #include "simulation/paths.h"
 
+#include <algorithm>
+
 #include "algorithms/kit/counted.h"
 
 namespace delassus::simulation {
@@ -71,7 +73,7 @@ template <class T> Report EquationsPath<T>::correct(const VectorX<T>& gap, Vecto
   push_.setConstant(T(0));
   wanted_.col(0) = -gap;
   if (!yields_) {
-    const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{accuracy_}, work_);
+    const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{std::max(accuracy_, of_correction)}, work_);
     d = motion_.col(0);
     if (report.status != Status::inconsistent) return report;
     if (!yielding_) yielding_ = std::make_unique<Yielding<T>>(numbers_->structure);

@@ -41,7 +41,7 @@ template <class T> class Path {
   /// δ (n) and λ of the step's rows, equations first.
   virtual StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) = 0;
   /// What of the last step the next one starts from.
-  virtual void remember(const Moment<T>&, State<T>&) {}
+  virtual void remember(const Moment<T>& now, State<T>& next) { next.impulses = now.state->impulses; }
   /// The contact problems of the last step, in the order of their islands; a step that failed ends with the one that was not solved.
   using Visit = std::function<void(const ContactProblem<double>& problem, bool solved)>;
   virtual void problems(const Visit&) const {}
@@ -65,6 +65,7 @@ template <class T> class FreePath final : public Path<T> {
 
 template <class T> class EquationsPath final : public Path<T> {
  public:
+  static constexpr double of_correction = 1e-6;  ///< accuracy asked of a correction: relative, in the energy norm
   EquationsPath(std::shared_ptr<const Structure> structure, Damping<T> damping, const std::string& op, double accuracy);
   [[nodiscard]] std::string_view name() const override { return "equations"; }
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
@@ -73,7 +74,7 @@ template <class T> class EquationsPath final : public Path<T> {
   /// Numbers for `correct`, after a step that was solved by others.
   void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_), numbers_ = &problem, yields_ = false; }
   /// The shortest change d of the joints, in the norm of M̂, with J d + R⁻¹μ = −gap, by the factor of the last step; rows that
-  /// contradict each other give way (yielding.h). The problem of `take` must live until then.
+  /// contradict each other give way (yielding.h). A step of Newton: what is bent leaves more than of_correction of a gap of 10⁻⁶. The problem of `take` must live until then.
   Report correct(const VectorX<T>& gap, VectorX<T>& d);
 
  private:

@@ -14,10 +14,11 @@ template <class T> void ContactSolver<T>::analyze(const ContactProblem<T>& p) {
   p.validate();
   op_.analyze(p);
   u_.resize(p.rows());
+  judged_.resize(p.rows());
   do_analyze(p);
 }
 
-template <class T> SolverReport ContactSolver<T>::solve(const ContactProblem<T>& p, Wanted wanted, VectorX<T>& lambda) {
+template <class T> SolverReport ContactSolver<T>::solve(const ContactProblem<T>& p, Wanted wanted, VectorX<T>& lambda, TreeOperators<T>* tree) {
   require(op_.fits(p), "ContactSolver::solve: call analyze with a problem of this structure first");
   if (lambda.size() != p.rows()) lambda.resize(p.rows());
   lambda.setZero();
@@ -27,7 +28,7 @@ template <class T> SolverReport ContactSolver<T>::solve(const ContactProblem<T>&
     report.residuals.natural = std::numeric_limits<double>::infinity();
     return report;
   }
-  const Report updated = op_.update(p);
+  const Report updated = op_.update(p, tree);
   if (!updated.ok()) {
     lambda.setConstant(ScalarTraits<T>::nan());
     report.status = updated.status;
@@ -37,8 +38,9 @@ template <class T> SolverReport ContactSolver<T>::solve(const ContactProblem<T>&
   }
   if (p.warm_start.size() == p.rows()) lambda = p.warm_start;
   project_all(p, lambda.data());
+  judged_.setConstant(ScalarTraits<T>::nan());  // of other numbers
   report = do_solve(p, wanted, lambda);
-  report.residuals = judged(p, lambda);
+  report.residuals = judged_ == lambda ? residuals_ : judged(p, lambda);
   const double reached = report.residuals.natural;
   if (reached <= wanted.velocity) report.status = Status::ok;
   else if (!std::isfinite(reached)) report.status = Status::not_finite;

@@ -43,7 +43,8 @@ template <class T> class ContactSolver {
   void analyze(const ContactProblem<T>& p);
   /// λ (m) of the problem. lambda is resized where it must be. not_supported leaves it zero; not_converged: the best iterate;
   /// not_finite, lost_pivot: NaN. @throws std::logic_error before analyze, or with another structure.
-  [[nodiscard]] SolverReport solve(const ContactProblem<T>& p, Wanted wanted, VectorX<T>& lambda);
+  /// `tree`: has taken the numbers of the problem's mechanism, and lends its factor.
+  [[nodiscard]] SolverReport solve(const ContactProblem<T>& p, Wanted wanted, VectorX<T>& lambda, TreeOperators<T>* tree = nullptr);
   /// u = (G + R⁻¹) λ + g − target of the last answer. Shape m.
   [[nodiscard]] const VectorX<T>& velocity() const { return u_; }
 
@@ -54,13 +55,18 @@ template <class T> class ContactSolver {
   virtual SolverReport do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) = 0;
 
   /// Residuals of λ; leaves its velocity in u_.
-  [[nodiscard]] Residuals judged(const ContactProblem<T>& p, const VectorX<T>& lambda) {
+  [[nodiscard]] const Residuals& judged(const ContactProblem<T>& p, const VectorX<T>& lambda) {
     op_.velocity(lambda.data(), u_.data());
-    return residuals(p, lambda.data(), u_.data(), op_.diagonal().data());
+    judged_ = lambda;
+    return residuals_ = residuals(p, lambda.data(), u_.data(), op_.diagonal().data());
   }
 
   ContactOperator<T> op_;
   VectorX<T> u_;
+
+ private:
+  VectorX<T> judged_;  // the last λ that was judged, and
+  Residuals residuals_;
 };
 
 /// The first Coulomb group that is on, or −1; likewise the first box.

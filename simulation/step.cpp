@@ -95,9 +95,9 @@ template <class T> const StepReport& Simulation<T>::euler() {
   gather();
   report_ = plan_.path->velocities(now_, change_, impulses_);
   if (!report_.ok()) return report_;
-  next_ = state_;
-  next_.nu += change_;
-  ++next_.steps;
+  next_.q = state_.q, next_.nu = state_.nu + change_;  // impulses are remembered anew
+  next_.steps = state_.steps + 1, next_.trial = state_.trial;
+  if (!plan_.rests.empty()) next_.rest.swap(state_.rest), next_.rest_force.swap(state_.rest_force);  // nothing fails from here on
   plan_.path->remember(now_, next_);
   advance_(now_.h, next_.q, next_.nu);
   for (auto* term : plan_.events) term->after(now_, next_);

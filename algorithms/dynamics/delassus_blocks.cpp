@@ -2,16 +2,15 @@
 
 #include <algorithm>
 
+#include "algorithms/factors/mobility.h"
 #include "algorithms/kit/instantiate.h"
-#include "algorithms/kit/scalars.h"
 
 namespace delassus {
 
 template <class T> struct DelassusBlocks<T>::Numbers {
-  using Rows = Eigen::Map<Eigen::Matrix<T, 6, Eigen::Dynamic>>;  // κᵀ: a force per column
-  struct Reached {  // a body, and the numbers of its κᵀ
-    Index body;
-    T* rows;
+  struct Reached {  // a step, and the first of its κ
+    int step;
+    Six<T>* rows;
   };
   struct Constraint {
     const Structure::LinkConstraint* link;
@@ -23,15 +22,15 @@ template <class T> struct DelassusBlocks<T>::Numbers {
 
   std::shared_ptr<const Structure> structure;
   std::vector<Constraint> constraints;
-  Problem<T> problem;
-  std::vector<Matrix6<T>> inertia, mobility;
-  std::vector<Vector6<T>> U;
-  std::vector<T> inverse;        // 1/D
-  std::vector<T> kappa, G;       // scratch
-  std::vector<Reached> reached;  // bodies, farthest from the roots last
-  Index used = 0;                // of kappa
+  std::unique_ptr<TreeOperators<T>> owned;
+  TreeOperators<T>* tree = nullptr;
+  const Factor<T>* factor = nullptr;
+  std::vector<SixBySix<T>> mobility;  // per step
+  std::vector<Six<T>> kappa;          // scratch
+  std::vector<T> G;                   // scratch: a joint's columns of G, one row behind the other
+  std::vector<Reached> reached;       // steps, farthest from the roots last
+  Index used = 0;                     // of kappa
   Report factored;
-  bool updated = false;
 
   explicit Numbers(std::shared_ptr<const Structure> s) : structure(std::move(s)) {
     require(structure != nullptr, "DelassusBlocks: no structure");
@@ -40,76 +39,56 @@ template <class T> struct DelassusBlocks<T>::Numbers {
     for (const auto& e : structure->link_constraints) constraints.push_back({&e, nullptr});
     for (const auto& e : structure->joint_constraints) constraints.push_back({nullptr, &e});
     for (const Constraint& e : constraints) rows = std::max(rows, 2 * e.rows()), bodies = std::max(bodies, 2 * e.bodies());
-    problem = Problem<T>(structure);
-    inertia.assign(static_cast<std::size_t>(structure->bodies()), Matrix6<T>::Zero());
-    mobility = inertia;
-    U.assign(static_cast<std::size_t>(structure->dofs()), Vector6<T>::Zero());
-    inverse.assign(U.size(), T(0));
-    kappa.assign(static_cast<std::size_t>(6 * rows * bodies), T(0));
-    G.assign(static_cast<std::size_t>(rows), T(0));
+    mobility.assign(static_cast<std::size_t>(structure->bodies()), SixBySix<T>::zero());
+    kappa.assign(static_cast<std::size_t>(rows * bodies), Six<T>::zero());
+    G.assign(static_cast<std::size_t>(6 * rows), T(0));
     reached.reserve(static_cast<std::size_t>(bodies));
   }
 
-  Report inwards() {
-    const Structure& s = *structure;
-    inertia = problem.H;
-    for (Index i = s.bodies(); i-- > 0;) {
-      Matrix6<T>& H = inertia[i];
-      for (Index k = s.first_dof[i + 1]; k-- > s.first_dof[i];) {
-        U[k] = H * problem.S[k];
-        const T pivot = problem.S[k].dot(U[k]) + problem.armature[k];
-        if (!ScalarTraits<T>::usable_pivot(pivot)) return {Status::lost_pivot, s.first_dof[i]};
-        inverse[k] = T(1) / pivot;
-        const Vector6<T> scaled = U[k] * inverse[k];
-        H -= scaled * U[k].transpose();
-      }
-      if (s.parent[i] != ground) inertia[s.parent[i]] += H;
-    }
-    return {};
+  Report take(TreeOperators<T>& of) {
+    tree = &of;
+    const auto [its, report] = of.factor();
+    factor = its;
+    factored = report;
+    const Plan& plan = of.plan();
+    for (int i = plan.steps; factored.ok() && i-- > plan.first_active;)
+      mobility[i] = delassus::mobility<T>(factor->joint(i), plan.parent[i] < 0 ? nullptr : &mobility[plan.parent[i]]);
+    return factored;
   }
 
-  void outwards() {
-    const Structure& s = *structure;
-    for (Index i = 0; i < s.bodies(); ++i) {
-      Matrix6<T>& Omega = mobility[i];
-      if (s.parent[i] == ground) Omega.setZero();
-      else Omega = mobility[s.parent[i]];
-      for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) {  // P Ω Pᵀ + S D⁻¹ Sᵀ
-        const Vector6<T> S = problem.S[k] * inverse[k], OU = Omega * U[k];
-        const T both = U[k].dot(OU) + T(1) / inverse[k];
-        Omega += S * S.transpose() * both - S * OU.transpose() - OU * S.transpose();
-      }
-    }
+  /// Where a step stands among those reached, or would: parents have later steps.
+  auto place_of(int step) {
+    return std::lower_bound(reached.begin(), reached.end(), step, [](const Reached& x, int i) { return x.step > i; });
   }
 
-  /// Where a body stands among those reached, or would.
-  auto place_of(Index body) {
-    return std::lower_bound(reached.begin(), reached.end(), body, [](const Reached& x, Index b) { return x.body < b; });
-  }
-
-  /// κᵀ of a body; zeros where it was not reached before.
-  Rows reach(Index body, Index rows) {
-    const auto at = place_of(body);
-    if (at != reached.end() && at->body == body) return Rows(at->rows, 6, rows);
-    T* const free = kappa.data() + 6 * rows * used++;
-    std::fill(free, free + 6 * rows, T(0));
-    reached.insert(at, {body, free});
-    return Rows(free, 6, rows);
+  /// κ of a body; zeros where it was not reached before.
+  Six<T>* reach(Index body, Index rows) {
+    const int step = tree->plan().step[body];
+    const auto at = place_of(step);
+    if (at != reached.end() && at->step == step) return at->rows;
+    Six<T>* const free = kappa.data() + rows * used++;
+    std::fill(free, free + rows, Six<T>::zero());
+    reached.insert(at, {step, free});
+    return free;
   }
 
   void begin(const Constraint& e, Index offset, Index rows) {
-    if (e.joint != nullptr) reach(e.joint->body, rows);
+    if (e.joint != nullptr) (void)reach(e.joint->body, rows);
     else
       for (const auto& link : e.link->links) {
-        Rows x = reach(link.body, rows);
-        for (Index r = 0; r < e.rows(); ++r) x.col(offset + r) += problem.K[link.first + r];
+        Six<T>* const x = reach(link.body, rows) + offset;
+        for (Index r = 0; r < e.rows(); ++r) add(x[r], load(tree->problem().K[link.first + r]));
       }
   }
 
-  void add_joint_rows(const Constraint& e, Index offset, Index body, Index k) {
-    if (e.joint == nullptr || e.joint->body != body) return;
-    const Index n = structure->dofs(body), c = k - structure->first_dof[body];
-    for (Index r = 0; r < e.rows(); ++r) G[offset + r] += problem.joint_K[e.joint->first + r * n + c];
+  [[nodiscard]] bool on_joint(const Constraint& e, int step) const { return e.joint != nullptr && tree->plan().step[e.joint->body] == step; }
+
+  void add_joint_rows(const Constraint& e, Index offset, int step, int dofs) {
+    if (!on_joint(e, step)) return;
+    factor->for_joint_rows(step, [&](int row, const T* k) {
+      const Index r = row - e.row();
+      for (int c = 0; r >= 0 && r < e.rows() && c < dofs; ++c) G[6 * (offset + r) + c] += k[c];
+    });
   }
 
   /// Calls add(r, c, value) for the parts of entry (r, c) of the block of e and f, e == f or not; the diagonal alone for few of them.
@@ -122,12 +101,10 @@ template <class T> struct DelassusBlocks<T>::Numbers {
     if (!same) begin(f, own, rows);
     while (!reached.empty()) {
       const Reached last = reached.back();
-      const Rows x(last.rows, 6, rows);
-      const bool joint_rows = (e.joint != nullptr && e.joint->body == last.body) || (f.joint != nullptr && f.joint->body == last.body);
-      if (reached.size() == 1 && !joint_rows) {
+      if (reached.size() == 1 && !on_joint(e, last.step) && !on_joint(f, last.step)) {
         for (Index c = 0; c < f.rows(); ++c) {
-          const Vector6<T> moved = mobility[last.body] * x.col(own + c);
-          for (Index r = few ? c : 0; r < (few ? c + 1 : e.rows()); ++r) add(r, c, T(x.col(r).dot(moved)));
+          const Six<T> moved = multiply(mobility[last.step], last.rows[own + c]);
+          for (Index r = few ? c : 0; r < (few ? c + 1 : e.rows()); ++r) add(r, c, dot(last.rows[r], moved));
         }
         return;
       }
@@ -139,21 +116,22 @@ template <class T> struct DelassusBlocks<T>::Numbers {
   /// The joint of a body, and what comes to its parent.
   template <class Add>
   void pass(const Constraint& e, const Constraint& f, Index own, const Reached& at, Index rows, bool few, const Add& add) {
-    const Structure& s = *structure;
-    Rows x(at.rows, 6, rows);
-    for (Index k = s.first_dof[at.body + 1]; k-- > s.first_dof[at.body];) {
-      for (Index r = 0; r < rows; ++r) G[r] = x.col(r).dot(problem.S[k]);
-      add_joint_rows(e, 0, at.body, k);
-      if (own > 0) add_joint_rows(f, own, at.body, k);
-      for (Index c = 0; c < f.rows(); ++c)
-        for (Index r = few ? c : 0; r < (few ? c + 1 : e.rows()); ++r) add(r, c, T(G[r] * inverse[k] * G[own + c]));
-      for (Index r = 0; r < rows; ++r) x.col(r) -= U[k] * T(G[r] * inverse[k]);
-    }
-    const Index parent = s.parent[at.body];
-    if (parent == ground) return;
+    const typename Factor<T>::Joint j = factor->joint(at.step);
+    for (Index r = 0; r < rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) G[6 * r + c] = dot(j.s[c], at.rows[r]);
+    add_joint_rows(e, 0, at.step, j.dofs);
+    if (own > 0) add_joint_rows(f, own, at.step, j.dofs);
+    for (Index c = 0; c < f.rows(); ++c)
+      for (Index r = few ? c : 0; r < (few ? c + 1 : e.rows()); ++r)
+        for (int k = 0; k < j.dofs; ++k) add(r, c, T(G[6 * r + k] * j.d_inverse[k] * G[6 * (own + c) + k]));
+    const int parent = tree->plan().parent[at.step];
+    if (parent < 0) return;
+    for (Index r = 0; r < rows; ++r)
+      for (int c = 0; c < j.dofs; ++c) subtract_scaled(at.rows[r], j.w[c], G[6 * r + c]);
     const auto place = place_of(parent);
-    if (place != reached.end() && place->body == parent) Rows(place->rows, 6, rows) += x;
-    else reached.insert(place, {parent, at.rows});
+    if (place == reached.end() || place->step != parent) reached.insert(place, {parent, at.rows});
+    else
+      for (Index r = 0; r < rows; ++r) delassus::add(place->rows[r], at.rows[r]);
   }
 };
 
@@ -162,19 +140,19 @@ template <class T> DelassusBlocks<T>::DelassusBlocks(DelassusBlocks&&) noexcept 
 template <class T> DelassusBlocks<T>::~DelassusBlocks() = default;
 
 template <class T> Report DelassusBlocks<T>::update(const Problem<T>& problem) {
-  Numbers& own = *own_;
-  require(problem.structure == own.structure, "DelassusBlocks::update: the problem has another structure");
-  problem.check_sizes();
-  own.problem = problem;
-  own.updated = true;
-  own.factored = own.inwards();
-  if (own.factored.ok()) own.outwards();
-  return own.factored;
+  if (!own_->owned) own_->owned = std::make_unique<TreeOperators<T>>(own_->structure);
+  (void)own_->owned->update(problem);
+  return own_->take(*own_->owned);
+}
+
+template <class T> Report DelassusBlocks<T>::update(TreeOperators<T>& tree) {
+  require(tree.problem().structure == own_->structure, "DelassusBlocks::update: the problem has another structure");
+  return own_->take(tree);
 }
 
 template <class T> Report DelassusBlocks<T>::diagonal(VectorX<T>& d) {
   Numbers& own = *own_;
-  require(own.updated, "DelassusBlocks: call update first");
+  require(own.tree != nullptr, "DelassusBlocks: call update first");
   d.setConstant(own.structure->rows, own.factored.ok() ? T(0) : ScalarTraits<T>::nan());
   if (own.factored.ok())
     for (const auto& e : own.constraints)
@@ -184,7 +162,7 @@ template <class T> Report DelassusBlocks<T>::diagonal(VectorX<T>& d) {
 
 template <class T> Report DelassusBlocks<T>::block(Index e, Index f, MatrixX<T>& out) {
   Numbers& own = *own_;
-  require(own.updated, "DelassusBlocks: call update first");
+  require(own.tree != nullptr, "DelassusBlocks: call update first");
   const auto count = static_cast<Index>(own.constraints.size());
   require(e >= 0 && e < count && f >= 0 && f < count, "DelassusBlocks::block: there is no such constraint");
   out.setConstant(own.constraints[e].rows(), own.constraints[f].rows(), own.factored.ok() ? T(0) : ScalarTraits<T>::nan());

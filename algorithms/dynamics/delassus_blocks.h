@@ -1,15 +1,15 @@
 // Chosen blocks of the Delassus matrix, and its diagonal, exactly and without the rest.
 //
 // What     (J M⁻¹Jᵀ)_ef for two constraints e, f: what block Jacobi, projected Gauss–Seidel and scalings ask for. R⁻¹ is not in it.
-// Formula  with the articulated-body numbers of each degree of freedom k, U_k = H S_k, D_k = S_kᵀU_k + A_k, H −= U_k U_kᵀ/D_k,
+// Formula  with the factor of M, joint by joint in the basis in which D is diagonal, W = H S,
 //            outwards, the mobility of body i (its inverse inertia as seen from outside):
-//              Ω_i = P Ω_π Pᵀ + S D⁻¹ Sᵀ,   P = 1 − S D⁻¹ Uᵀ          (degree of freedom after degree of freedom)
+//              Ω_i = S D⁻¹ Sᵀ + Pᵀ Ω_π P,   P = 1 − W D⁻¹ Sᵀ
 //            inwards, with κ the rows of e and f as forces on the bodies that they have reached (κ = K to begin with):
-//              G_k = κ S_k + 𝒦_k,   block += G_k,e D_k⁻¹ G_k,fᵀ,   κ_π += κ − G_k D_k⁻¹ U_kᵀ
+//              G = κ S + 𝒦,   block += G_e D⁻¹ G_fᵀ,   κ_π += κ − G D⁻¹ Wᵀ
 //            until all of them have come to one body i:   block += κ_e Ω_i κ_fᵀ.
 // How      The body farthest from the roots goes first, so a body is passed when everything below it has arrived; rows at a root end.
 //          A row with one body needs no step at all.
-// Cost     update about 700 operations per degree of freedom; a block 80 per row and 6 m_e m_f, and 24 per row and degree of
+// Cost     update that of the factor, where none is given, and about 300 operations per degree of freedom; a block 80 per row and 6 m_e m_f, and 24 per row and degree of
 //          freedom between its bodies and the one where they meet (or the roots). Diagonal: O(m + Σ of these ways).
 // Error    within the data's sensitivity, as aba_sweep.
 // Source   K. Kreutz-Delgado, A. Jain, G. Rodriguez 1992 (recursive formulation of operational space control); K.-S. Chang, O. Khatib
@@ -18,12 +18,11 @@
 
 #include <memory>
 
-#include "algorithms/errors/status.h"
-#include "algorithms/problem/problem.h"
+#include "algorithms/dynamics/tree_operators.h"
 
 namespace delassus {
 
-/// Serves every scalar. Threads: one each. Nothing allocates after the constructor but what comes back.
+/// Serves every scalar. Threads: one each. Nothing allocates after the first update but what comes back.
 template <class T> class DelassusBlocks {
  public:
   /// @throws ModelError for a bad structure.
@@ -33,6 +32,8 @@ template <class T> class DelassusBlocks {
 
   /// Numbers at a configuration. Report: lost_pivot with the joint's first degree of freedom where M is singular.
   [[nodiscard]] Report update(const Problem<T>& problem);
+  /// Likewise, with the factor of M that is there; it must live, and keep its numbers, until the last call.
+  [[nodiscard]] Report update(TreeOperators<T>& tree);
 
   /// d_r = (J M⁻¹Jᵀ)_rr. Shape m. Report: as that of update; NaN where it is not ok.
   [[nodiscard]] Report diagonal(VectorX<T>& d);

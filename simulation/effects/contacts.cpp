@@ -24,12 +24,16 @@ double reach_of(const Body& b) {
   return reach;
 }
 
-/// Velocity of the point of a body, from its tree's reference point.
-template <class T> Vector3<T> velocity_at(const Problem<T>& p, const VectorX<T>& nu, Index body, const Vector3<T>& point) {
+/// Motion of a body, from its tree's reference point.
+template <class T> Vector6<T> twist_of(const Problem<T>& p, const VectorX<T>& nu, Index body) {
   Vector6<T> twist = Vector6<T>::Constant(T(0));
   const Structure& s = *p.structure;
   for (Index i = body; i != ground; i = s.parent[i])
     for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) twist += p.S[k] * nu[k];
+  return twist;
+}
+
+template <class T> Vector3<T> velocity_at(const Vector6<T>& twist, const Vector3<T>& point) {
   const Vector3<T> omega = twist.template head<3>();
   return twist.template tail<3>() + omega.cross(point);
 }
@@ -140,13 +144,20 @@ template <class T> void ContactFriction<T>::add_rows(Moment<T>& now) {
 template <class T> void Restitution<T>::add_rows(Moment<T>& now) {
   const VectorX<T>& nu = now.state->nu;
   auto touching = now.touching.begin();  // a row set each, in this order
+  const RowSet<T>* last = nullptr;
+  Vector6<T> twist, of_other;
   for (RowSet<T>& s : *now.rows) {
     if (s.kind != RowSet<T>::Kind::contact) continue;
     const double own = (touching++)->restitution;
     const T e = own >= 0 ? T(own) : e_;
     if (!(e > T(0))) continue;
-    Vector3<T> v = velocity_at(*now.problem, nu, s.body, s.point);
-    if (s.other != ground) v -= velocity_at(*now.problem, nu, s.other, s.point_of_other);
+    if (last == nullptr || last->body != s.body || last->other != s.other) {
+      twist = twist_of(*now.problem, nu, s.body);
+      if (s.other != ground) of_other = twist_of(*now.problem, nu, s.other);
+    }
+    last = &s;
+    Vector3<T> v = velocity_at(twist, s.point);
+    if (s.other != ground) v -= velocity_at(of_other, s.point_of_other);
     const T approach = Vector3<T>(s.axes.col(0)).dot(v);
     if (approach < T(-bounce_speed) && s.gap + now.h * approach <= T(0)) s.target = std::max(s.target, T(-e * approach));
   }

@@ -22,19 +22,23 @@ Sleeping<T>::Sleeping(const Model& model, const SceneMotion::Sleeping& limits, d
   }
   label_.assign(dofs_.size(), -1);
   quiet_.assign(dofs_.size(), 0);
+  falls_ = quiet_;
   resting_.assign(tree_.size(), 0);
-  speeds_.resize(tree_.size());
+  speeds_.assign(tree_.size(), Six<T>::zero());
 }
 
 template <class T> bool Sleeping<T>::rests(Moment<T>& now) {
+  now.resting = nullptr;
+  if (looked_ && !any_) return false;
   const auto& rest = now.state->rest;
   bool all = looked_;
   for (std::size_t t = 0; t < label_.size(); ++t) {
     label_[t] = rest.empty() ? -1 : rest[t].island;
     all = all && label_[t] >= 0 && rest[t].known;
   }
-  for (std::size_t i = 0; i < tree_.size(); ++i) resting_[i] = label_of(static_cast<Index>(i)) >= 0;
-  now.resting = &resting_;
+  any_ = std::any_of(label_.begin(), label_.end(), [](Index label) { return label >= 0; });
+  for (std::size_t i = 0; any_ && i < tree_.size(); ++i) resting_[i] = label_of(static_cast<Index>(i)) >= 0;
+  if (any_) now.resting = &resting_;
   looked_ = true;
   return all;
 }
@@ -67,10 +71,11 @@ template <class T> void Sleeping<T>::look_again(Moment<T>& now) {
 }
 
 template <class T> void Sleeping<T>::detect(Moment<T>& now) {
-  if (touched(now)) look_again(now);
+  if (any_ && touched(now)) look_again(now);
 }
 
 template <class T> void Sleeping<T>::add_force(Moment<T>& now) {
+  if (!any_) return;
   const auto& rest = now.state->rest;
   bool woke = false;
   for (std::size_t t = 0; t < label_.size(); ++t) {
@@ -87,19 +92,21 @@ template <class T> void Sleeping<T>::add_force(Moment<T>& now) {
 
 /// Which trees are quiet at the end of the step, by the frames at its start.
 template <class T> void Sleeping<T>::measure(Moment<T>& now, const VectorX<T>& nu) {
-  using std::sqrt;
   const Problem<T>& p = *now.problem;
   const Structure& s = *p.structure;
   const Poses<T>& at = now.poses();
-  std::fill(quiet_.begin(), quiet_.end(), std::uint8_t{1});
+  const T fastest(linear_ * std::abs(linear_)), fastest_turn(angular_ * std::abs(angular_));  // below 0: never
   for (Index i = 0; i < s.bodies(); ++i) {
-    Vector6<T>& v = speeds_[z(i)];
-    if (s.parent[i] != ground) v = speeds_[z(s.parent[i])];
-    else v = Vector6<T>::Constant(T(0));
-    if (resting_[z(i)] != 0) continue;
-    for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) v += p.S[z(k)] * nu[k];
-    const Vector3<T> omega = v.template head<3>(), linear = v.template tail<3>() + omega.cross(at.position[z(i)]);
-    if (!(sqrt(omega.dot(omega)) <= T(angular_) && sqrt(linear.dot(linear)) <= T(linear_))) quiet_[z(tree_[z(i)])] = 0;
+    std::uint8_t& quiet = quiet_[z(tree_[z(i)])];
+    const bool root = s.parent[i] == ground;
+    if (root) quiet = 1;
+    if (quiet == 0) continue;  // whatever the others of its tree do
+    Six<T> v = root ? Six<T>::zero() : speeds_[z(s.parent[i])];
+    if (now.resting == nullptr || resting_[z(i)] == 0)
+      for (Index k = s.first_dof[i]; k < s.first_dof[i + 1]; ++k) add_scaled(v, load(p.S[z(k)]), nu[k]);
+    speeds_[z(i)] = v;
+    const Vector3<T> omega(v[0], v[1], v[2]), linear = Vector3<T>(v[3], v[4], v[5]) + omega.cross(at.position[z(i)]);
+    if (!(omega.dot(omega) <= fastest_turn && linear.dot(linear) <= fastest)) quiet = 0;
   }
 }
 
@@ -114,24 +121,33 @@ template <class T> void Sleeping<T>::stay(const Moment<T>& now, State<T>& next, 
 }
 
 template <class T> void Sleeping<T>::after(Moment<T>& now, State<T>& next) {
-  next.rest.resize(label_.size());
-  if (next.rest_force.size() != next.nu.size()) next.rest_force = VectorX<T>::Constant(next.nu.size(), T(0));
+  if (next.rest.size() != label_.size()) {
+    next.rest.resize(label_.size());
+    next.rest_force = VectorX<T>::Constant(next.nu.size(), T(0));
+  }
   measure(now, next.nu);
-  const std::vector<Index>& island = *now.island;
-  std::vector<std::uint8_t> falls(label_.size(), 1);
+  bool long_enough = false;
   for (std::size_t t = 0; t < label_.size(); ++t) {
     auto& rest = next.rest[t];
     if (label_[t] >= 0) {
       stay(now, next, t);
-      falls[z(island[t])] = 0;
       continue;
     }
     rest.quiet = quiet_[t] != 0 ? (rest.island >= 0 ? 1 : rest.quiet + 1) : 0;
     rest.island = -1;
-    if (rest.quiet < steps_) falls[z(island[t])] = 0;
+    long_enough = long_enough || rest.quiet >= steps_;
   }
+  if (long_enough) fall(next, *now.island);
+}
+
+/// Islands of which no tree sleeps, and all have been quiet.
+template <class T> void Sleeping<T>::fall(State<T>& next, const std::vector<Index>& island) {
+  std::fill(falls_.begin(), falls_.end(), std::uint8_t{1});
+  for (std::size_t t = 0; t < label_.size(); ++t)
+    if (label_[t] >= 0 || next.rest[t].quiet < steps_) falls_[z(island[t])] = 0;
   for (std::size_t t = 0; t < label_.size(); ++t) {
-    if (falls[z(island[t])] == 0) continue;
+    if (falls_[z(island[t])] == 0) continue;
+    any_ = true;
     next.rest[t].island = island[t];
     next.rest[t].known = false;
     for (const Range& r : dofs_[t])
@@ -140,7 +156,7 @@ template <class T> void Sleeping<T>::after(Moment<T>& now, State<T>& next) {
 }
 
 template <class T> Index Sleeping<T>::bytes() const {
-  return static_cast<Index>(sizeof(*this) + tree_.size() * (sizeof(Index) + sizeof(Vector6<T>) + 1 + sizeof(Range)) + label_.size() * (sizeof(Index) + 1));
+  return static_cast<Index>(sizeof(*this) + tree_.size() * (sizeof(Index) + sizeof(Six<T>) + 1 + sizeof(Range)) + label_.size() * (sizeof(Index) + 2));
 }
 
 template class Sleeping<double>;

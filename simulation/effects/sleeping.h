@@ -11,6 +11,7 @@
 // Cost     20 operations a body, 2 a degree of freedom.
 #pragma once
 
+#include "algorithms/kit/six.h"
 #include "models/scene.h"
 #include "simulation/terms.h"
 
@@ -36,6 +37,7 @@ template <class T> class Sleeping final : public Effect, public RestTerm<T>, pub
   [[nodiscard]] bool touched(const Moment<T>& now);
   void look_again(Moment<T>& now);
   void measure(Moment<T>& now, const VectorX<T>& nu);
+  void fall(State<T>& next, const std::vector<Index>& island);
   void stay(const Moment<T>& now, State<T>& next, std::size_t tree) const;
 
   double linear_, angular_;
@@ -44,9 +46,10 @@ template <class T> class Sleeping final : public Effect, public RestTerm<T>, pub
   std::vector<Index> tree_;                      // per body
   std::vector<std::vector<Range>> dofs_;         // per tree
   std::vector<Index> label_;                     // per tree: the island it sleeps in, −1 awake
-  std::vector<std::uint8_t> resting_, quiet_;    // per body; per tree
-  std::vector<Vector6<T>> speeds_;
-  bool looked_ = false;
+  std::vector<std::uint8_t> resting_;            // per body, where one sleeps
+  std::vector<std::uint8_t> quiet_, falls_;      // per tree; per island, by its first tree
+  std::vector<Six<T>> speeds_;                   // per body, where its tree may be quiet
+  bool looked_ = false, any_ = false;            // at this state; something sleeps, or may
 };
 
 }  // namespace delassus::simulation

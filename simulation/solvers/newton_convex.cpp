@@ -20,7 +20,7 @@ template <class T> void NewtonConvex<T>::do_analyze(const ContactProblem<T>& p) 
 
 template <class T> SolverReport NewtonConvex<T>::do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) {
   SolverReport report;
-  Report made = newton_.start(p);
+  Report made = newton_.start(p, this->op_.tree());
   if (made.ok()) made = newton_.begin_at(lambda);
   if (made.ok()) {
     std::copy(p.R_inverse.begin(), p.R_inverse.end(), R_inverse_.data());

@@ -1,6 +1,7 @@
 #include "simulation/solvers/primal_newton.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace delassus::simulation {
 
@@ -23,7 +24,6 @@ template <class T> void PrimalNewton<T>::analyze(const ContactProblem<T>& p) {
   plan_ = make_plan(s, Matrix::M_R);
   factor_.analyze(s, plan_);
   weights_.analyze(s);
-  tree_ = std::make_unique<TreeOperators<T>>(p.mechanism->structure);
   work_ = std::make_unique<Workspace<T>>(factor_.solve_workspace());
   H_.diagonal.assign(static_cast<std::size_t>(p.rows()), T(0));
   H_.blocks.clear();
@@ -35,15 +35,16 @@ template <class T> void PrimalNewton<T>::analyze(const ContactProblem<T>& p) {
     H_.blocks.push_back({p.groups[e].row, MatrixX<T>::Zero(p.groups[e].rows, p.groups[e].rows)});
   }
   for (VectorX<T>* const v : {&w_, &Mw_, &d_, &Md_, &tau_}) v->setZero(s.dofs());
-  for (VectorX<T>* const v : {&u_, &Jd_, &moved_, &trial_, &origin_, &gained_, &root_, &mu_, &scaled_}) v->setZero(p.rows());
+  for (VectorX<T>* const v : {&u_, &Jd_, &HJd_, &expected_, &moved_, &trial_, &origin_, &gained_, &root_, &mu_, &scaled_}) v->setZero(p.rows());
 }
 
-template <class T> Report PrimalNewton<T>::start(const ContactProblem<T>& p) {
+template <class T> Report PrimalNewton<T>::start(const ContactProblem<T>& p, TreeOperators<T>& tree) {
   problem_ = &p;
+  tree_ = &tree;
   w_.setZero();
   origin_.setZero();
-  const Report report = factor_.start(*p.mechanism);
-  return report.ok() ? tree_->update(*p.mechanism) : report;
+  expects_ = false;
+  return factor_.start(*p.mechanism);
 }
 
 template <class T> Report PrimalNewton<T>::begin_at(const VectorX<T>& lambda) {
@@ -51,9 +52,22 @@ template <class T> Report PrimalNewton<T>::begin_at(const VectorX<T>& lambda) {
   return tree_->M_inverse(tau_, w_);
 }
 
-template <class T> void PrimalNewton<T>::begin_from(const VectorX<T>& lambda) {
-  w_.setZero();
+template <class T> Report PrimalNewton<T>::begin_from(const VectorX<T>& lambda, const VectorX<T>& x, const VectorX<T>& R_inverse, const VectorX<T>& b) {
   origin_ = lambda;
+  take(R_inverse);
+  for (Index r = 0; r < x.size(); ++r) u_[r] = -R_inverse[r] * x[r];
+  impulses(R_inverse, u_, expected_);
+  curve(R_inverse, u_, expected_);
+  moved_ = b - u_;
+  multiply_hessian(moved_, HJd_);
+  expected_ -= HJd_;  // λ at u = b; along d it is expected_ − H J d
+  Mw_.setZero();
+  const Report report = direction(expected_, w_, Jd_);
+  multiply_hessian(Jd_, HJd_);
+  expected_ -= HJd_;
+  u_ = b + Jd_;
+  expects_ = true;
+  return report;
 }
 
 // In the metric R⁻¹ a cone is scaled by R^½ of each row.
@@ -124,27 +138,53 @@ template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, V
   return report;
 }
 
+// H x at the blocks of the last curve.
+template <class T> void PrimalNewton<T>::multiply_hessian(const VectorX<T>& x, VectorX<T>& y) const {
+  for (std::size_t e = 0; e < problem_->groups.size(); ++e) {
+    const ConeRows& c = problem_->groups[e];
+    if (c.cone == Cone::coulomb) y.segment(c.row, c.rows).noalias() = H_.blocks[block_of_[e]].R_inverse.lazyProduct(x.segment(c.row, c.rows));
+    else
+      for (Index r = c.row; r < c.row + c.rows; ++r) y[r] = H_.diagonal[static_cast<std::size_t>(r)] * x[r];
+  }
+}
+
+// α; leaves u + α J d in moved_ and its λ in trial_.
 template <class T> T PrimalNewton<T>::length(const VectorX<T>& R_inverse) {
   using std::abs;
   const T dMw = d_.dot(Mw_), dMd = d_.dot(Md_);
   const T start = abs(dMw - Jd_.dot(gained_));  // φ'(0): direction has left λ − λ₀
   T low(0), high(0), alpha(1);
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0;; ++k) {
     moved_ = u_ + alpha * Jd_;
     impulses(R_inverse, moved_, trial_);
-    const T value = dMw + alpha * dMd - Jd_.dot(trial_ - origin_);
-    if (abs(value) <= T(flat_enough) * start) break;
+    gained_ = trial_ - origin_;
+    const T value = dMw + alpha * dMd - Jd_.dot(gained_);
+    if (k == 60 || abs(value) <= T(flat_enough) * start) return alpha;
     (value < T(0) ? low : high) = alpha;
     curve(R_inverse, moved_, trial_);
-    weights_.assign(H_);
-    weights_.multiply(Jd_.data(), moved_.data());
-    const T curvature = dMd + Jd_.dot(moved_);  // φ''(α) = dᵀM d + (J d)ᵀH (J d)
+    multiply_hessian(Jd_, HJd_);
+    const T curvature = dMd + Jd_.dot(HJd_);  // φ''(α) = dᵀM d + (J d)ᵀH (J d)
     T next = alpha - value / curvature;
     if (high > T(0) && !(next > low && next < high)) next = low + (high - low) / T(2);
-    if (!(next > low) || next == alpha) break;
+    if (!(next > low) || next == alpha) return alpha;
     alpha = next;
   }
-  return alpha;
+}
+
+// Whether λ is what H said but for rounding: the gradient is Jᵀ of the difference, and nothing else. What u rounds is as large as R
+// makes it where λ = −R u, and in the interior of a cone alone.
+template <class T> bool PrimalNewton<T>::is_expected(const VectorX<T>& R_inverse, const VectorX<T>& b, const VectorX<T>& lambda, double velocity) const {
+  using std::abs;
+  constexpr T eps(8 * unit_roundoff<T>);
+  for (std::size_t e = 0; e < problem_->groups.size(); ++e) {
+    const ConeRows& c = problem_->groups[e];
+    const bool curved = c.cone == Cone::coulomb && projected_[e].region == Region::boundary;
+    for (Index r = c.row; r < c.row + c.rows; ++r) {
+      const T floor = eps * (curved ? T(R_inverse[r] * lambda[c.row]) : T(abs(u_[r]) + abs(b[r])));
+      if (!(R_inverse[r] * abs(lambda[r] - expected_[r]) <= std::max(T(velocity), floor))) return false;
+    }
+  }
+  return true;
 }
 
 template <class T>
@@ -152,23 +192,31 @@ typename PrimalNewton<T>::Outcome PrimalNewton<T>::minimise(const VectorX<T>& R_
   Outcome out;
   double before = std::numeric_limits<double>::infinity();
   take(R_inverse);
-  for (bool last = false;; ++out.iterations) {
+  if (!expects_) {
     tree_->J(w_, u_);
     u_ += b;
-    tree_->M(w_, Mw_);
-    impulses(R_inverse, u_, lambda);
-    if (last || out.iterations == iterations) return out;
+  }
+  impulses(R_inverse, u_, lambda);
+  if (std::exchange(expects_, false) && is_expected(R_inverse, b, lambda, velocity)) return out;
+  tree_->M(w_, Mw_);
+  for (bool last = false; !last && out.iterations < iterations; ++out.iterations) {
     curve(R_inverse, u_, lambda);
     out.report = direction(lambda, d_, Jd_);
     if (!out.report.ok()) return out;
+    multiply_hessian(Jd_, HJd_);
+    expected_ = lambda - HJd_;
     tree_->M(d_, Md_);
     const T alpha = length(R_inverse);
     w_ += alpha * d_;
+    Mw_ += alpha * Md_;
+    std::swap(u_, moved_);
+    std::swap(lambda, trial_);
     const double step = static_cast<double>((alpha * Jd_).template lpNorm<Eigen::Infinity>());
     const double floor = 8 * unit_roundoff<T> * static_cast<double>(u_.template lpNorm<Eigen::Infinity>() + b.template lpNorm<Eigen::Infinity>());
-    last = !(step > std::max(velocity, floor)) || (step < 1e3 * floor && step >= before);
+    last = !(step > floor) || (step < 1e3 * floor && step >= before) || (alpha == T(1) && is_expected(R_inverse, b, lambda, velocity));
     before = step;
   }
+  return out;
 }
 
 // Fenchel: ½ wᵀMw + ℓ(u) + ½ λᵀ(G + R⁻¹)λ + λᵀb at λ(u) is ½ ‖w − M⁻¹Jᵀ(λ − λ₀)‖²_M

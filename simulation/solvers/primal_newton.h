@@ -28,13 +28,13 @@ template <class T> class PrimalNewton {
   /// Why the rows cannot be taken, or "": the rows of a Coulomb group must be rows of one constraint.
   [[nodiscard]] static std::string refusal(const ContactProblem<T>& p);
   void analyze(const ContactProblem<T>& p);
-  /// Numbers of the mechanism; w and λ₀ are set to zero.
-  [[nodiscard]] Report start(const ContactProblem<T>& p);
+  /// Numbers of the mechanism, which `tree` has taken and keeps; w and λ₀ are set to zero.
+  [[nodiscard]] Report start(const ContactProblem<T>& p, TreeOperators<T>& tree);
   /// w = M⁻¹Jᵀλ: where a warm start begins.
   [[nodiscard]] Report begin_at(const VectorX<T>& lambda);
 
-  /// w = 0, λ₀ = λ: the b of minimise has the motion of λ in it.
-  void begin_from(const VectorX<T>& lambda);
+  /// λ₀ = λ: the b of minimise has the motion of λ in it. w: a step of Newton from u = −R⁻¹x, the cones where x is in them.
+  [[nodiscard]] Report begin_from(const VectorX<T>& lambda, const VectorX<T>& x, const VectorX<T>& R_inverse, const VectorX<T>& b);
 
   struct Outcome {
     Report report;
@@ -57,18 +57,21 @@ template <class T> class PrimalNewton {
   void take(const VectorX<T>& R_inverse);
   void impulses(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
   void curve(const VectorX<T>& R_inverse, const VectorX<T>& u, const VectorX<T>& lambda);
+  void multiply_hessian(const VectorX<T>& x, VectorX<T>& y) const;
   T length(const VectorX<T>& R_inverse);
+  bool is_expected(const VectorX<T>& R_inverse, const VectorX<T>& b, const VectorX<T>& lambda, double velocity) const;
   const ContactProblem<T>* problem_ = nullptr;
   Plan plan_;
   Factor<T> factor_;
   BlockDiagonal<T> weights_;
-  std::unique_ptr<TreeOperators<T>> tree_;
+  TreeOperators<T>* tree_ = nullptr;
   std::unique_ptr<Workspace<T>> work_;
   Damping<T> H_;
   std::vector<std::size_t> block_of_;           // per group
   std::vector<ConeProjection<T>> projected_;    // per group, of the last λ(u)
   VectorX<T> root_, mu_, scaled_;               // of Coulomb rows: R^½, coefficients in the metric R⁻¹, Π̂
-  VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, moved_, trial_, tau_, origin_, gained_;
+  VectorX<T> w_, Mw_, d_, Md_, u_, Jd_, HJd_, expected_, moved_, trial_, tau_, origin_, gained_;
+  bool expects_ = false;  // w, u and expected_ are those of begin_from
 };
 
 }  // namespace delassus::simulation

@@ -4,18 +4,22 @@ namespace delassus::simulation {
 
 template <class T> void ProximalNewton<T>::do_analyze(const ContactProblem<T>& p) {
   if (p.mechanism) newton_.analyze(p);
-  for (VectorX<T>* const v : {&R_inverse_, &b_, &before_}) v->setZero(p.rows());
+  for (VectorX<T>* const v : {&R_inverse_, &b_, &x_, &before_}) v->setZero(p.rows());
 }
 
 // b = (G λ + g − target + Γ e_n) − E λ of the last λ: its velocity u + Γ e_n − (R⁻¹ + E) λ.
 template <class T> void ProximalNewton<T>::expand(const ContactProblem<T>& p, const VectorX<T>& lambda) {
   for (const ConeRows& c : p.groups) {
-    if (p.is_off(c)) {
-      b_.segment(c.row, c.rows).setZero();
-      continue;
+    b_.segment(c.row, c.rows).setZero();
+    x_.segment(c.row, c.rows).setZero();
+    if (p.is_off(c)) continue;
+    if (c.cone == Cone::coulomb && p.law == FrictionLaw::exact) b_[c.row] = tangent_norm(this->u_.data() + c.row, p.friction.data() + c.row, c.rows);
+    const T gamma = this->op_.diagonal().segment(c.row, c.rows).mean();
+    for (Index r = c.row; r < c.row + c.rows; ++r) {
+      b_[r] += this->u_[r];
+      x_[r] = gamma > T(0) ? T(lambda[r] - b_[r] / gamma) : lambda[r];
+      b_[r] -= R_inverse_[r] * lambda[r];
     }
-    for (Index r = c.row; r < c.row + c.rows; ++r) b_[r] = this->u_[r] - R_inverse_[r] * lambda[r];
-    if (c.cone == Cone::coulomb && p.law == FrictionLaw::exact) b_[c.row] += tangent_norm(this->u_.data() + c.row, p.friction.data() + c.row, c.rows);
   }
 }
 
@@ -33,28 +37,43 @@ template <class T> void ProximalNewton<T>::shift(const ContactProblem<T>& p, dou
   }
 }
 
+// The next ε: see the header.
+template <class T> void ProximalNewton<T>::Weight::follow(double reached, int inner) {
+  const bool grew = reached >= 1.25 * before_, stuck = reached >= 0.9 * before_, easy = inner <= 2, at_least = epsilon <= 2 * least_;
+  if ((grew || (stuck && at_least)) && epsilon < first_epsilon) {
+    epsilon = 10 * epsilon;
+    if (++risen_ > 3) least_ = epsilon;
+  } else if (!grew && (easy ? 50 : 2) * reached > before_) {
+    if (stuck && at_least) least_ = possible_, risen_ = 0;
+    if (epsilon > 2 * least_) epsilon = std::max(least_, epsilon / (easy ? 100 : 10));
+  }
+  before_ = reached;
+}
+
 template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) {
   SolverReport report;
-  Report made = newton_.start(p);
-  double epsilon = first_epsilon, before = std::numeric_limits<double>::infinity();
-  shift(p, epsilon);
+  Report made = newton_.start(p, this->op_.tree());
+  Weight weight;
+  typename PrimalNewton<T>::Outcome inner;
   while (made.ok()) {
     const double reached = this->judged(p, lambda).natural;
     if (reached <= wanted.velocity) return report;
     if (report.iterations >= wanted.iterations) break;
-    if (reached >= before && epsilon < first_epsilon) shift(p, epsilon = 10 * epsilon);
-    else if (reached < before && 2 * reached > before && epsilon > least_epsilon) shift(p, epsilon = epsilon / 10);
-    before = reached;
+    weight.follow(reached, inner.iterations);
+    shift(p, weight.epsilon);
     before_ = lambda;
     expand(p, lambda);
-    newton_.begin_from(lambda);
-    const auto out = newton_.minimise(R_inverse_, b_, 0, wanted.iterations - report.iterations, lambda);
-    report.iterations += std::max(out.iterations, 1);
-    made = out.report;
-    if (made.status == Status::lost_pivot && epsilon < 1) {
+    made = newton_.begin_from(lambda, x_, R_inverse_, b_);
+    ++report.iterations;
+    if (made.ok()) {
+      inner = newton_.minimise(R_inverse_, b_, inexact * weight.epsilon * std::max(wanted.velocity, reached), wanted.iterations - report.iterations, lambda);
+      report.iterations += inner.iterations;
+      made = inner.report;
+    }
+    if (made.status == Status::lost_pivot && weight.epsilon < 1) {
       lambda = before_;
       made = {};
-      shift(p, epsilon = 10 * epsilon);
+      weight.rise();
     }
   }
   report.status = made.ok() ? Status::not_converged : made.status;

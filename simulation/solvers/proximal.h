@@ -5,12 +5,20 @@
 //            = the problem of primal_newton.h with R⁻¹ + E and λ₀ = λ before, b = u(λ before) + Γ e_n − (R⁻¹ + E) λ before: what a
 //          point rounds is of the size of its change
 //          Γ ← ‖(μ_i u_i)‖ at the last motion (exact; relaxed 0)
-// ε        begins at 1e-4. Where the residual falls by less than a half it becomes a tenth, down to 1e-8: a direction that weighs σ falls by
-//          ε/(ε + σ) a point. Where it falls no more it grows tenfold again, and where a pivot is lost beside 1/E, up to 1.
+// Start    of each point: one step of Newton from the cones that λ − ũ/γ is in, as the natural residual sees them. Where they are those
+//          of the answer it is the answer: an iteration a point, and no other where λ is what it expects.
+// ε        begins at 1e-3: a direction that weighs σ falls by ε/(ε + σ) a point. Where the residual falls by less than a half it becomes a
+//          tenth, down to 1e-8; a hundredth, and where it falls by less than fifty, as long as points take two iterations more and less:
+//          a small ε makes cones hard to find. Where the residual grows, or stays as it is at the least ε, ε grows tenfold: Γ
+//          goes in circles; the fourth time it does not come down again, until it stays as it is there, too: λ creeps along rows
+//          that depend on each other. Where a pivot is lost beside 1/E it grows up to 1.
+// Inside   minimised until λ is what is expected to a tenth of the residual: the next point mends more.
 // End      natural residual. Γ is a fixed point that need not converge: not_converged says so.
 // Cost     Newton's iterations, O(n + m) each; the report counts them.
 // Source   R. T. Rockafellar 1976; V. Acary, F. Cadoux 2013 (the fixed point on Γ).
 #pragma once
+
+#include <limits>
 
 #include "simulation/solver.h"
 #include "simulation/solvers/primal_newton.h"
@@ -19,7 +27,7 @@ namespace delassus::simulation {
 
 template <class T> class ProximalNewton : public ContactSolver<T> {
  public:
-  static constexpr double first_epsilon = 1e-4, least_epsilon = 1e-8;
+  static constexpr double first_epsilon = 1e-3, least_epsilon = 1e-8, inexact = 0.1;
   [[nodiscard]] std::string refusal(const ContactProblem<T>& p) const override { return PrimalNewton<T>::refusal(p); }
 
  protected:
@@ -27,10 +35,23 @@ template <class T> class ProximalNewton : public ContactSolver<T> {
   SolverReport do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) override;
 
  private:
+  /// ε, point by point.
+  class Weight {
+   public:
+    double epsilon = first_epsilon;
+    /// After a point with this residual, which took so many iterations after its start.
+    void follow(double reached, int inner);
+    /// A pivot was lost: not as small again.
+    void rise() { possible_ = least_ = epsilon = 10 * epsilon; }
+
+   private:
+    double possible_ = least_epsilon, least_ = least_epsilon, before_ = std::numeric_limits<double>::infinity();
+    int risen_ = 0;
+  };
   void shift(const ContactProblem<T>& p, double epsilon);
   void expand(const ContactProblem<T>& p, const VectorX<T>& lambda);
   PrimalNewton<T> newton_;
-  VectorX<T> R_inverse_, b_, before_;
+  VectorX<T> R_inverse_, b_, x_, before_;
 };
 
 }  // namespace delassus::simulation
