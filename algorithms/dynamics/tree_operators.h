@@ -21,7 +21,7 @@
 
 namespace delassus {
 
-/// Serves every scalar. Threads: one each. Nothing allocates after the constructor. Shapes: n×k on the side of joints, m×k on that
+/// Serves every scalar. Threads: one each. Nothing allocates after the first update. Shapes: n×k on the side of joints, m×k on that
 /// of rows, in the orders of the structure [rad/s and m/s, N m and N, or their derivatives]; in- and output must not overlap.
 /// @throws std::logic_error where they do not fit, or before the first update.
 template <class T> class TreeOperators {

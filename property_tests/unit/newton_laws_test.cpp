@@ -133,22 +133,31 @@ TEST(NewtonLaws, WrongHessiansAreNoticed) {
   }
 }
 
+Bench half_lines(std::uint64_t seed) {
+  Bench s(spec(3, 4, seed, seed % 2 == 0));
+  for (ConeRows& c : s.p.groups) c.cone = Cone::half_line;
+  std::fill(s.p.friction.begin(), s.p.friction.end(), 0);
+  return s;
+}
+
+bool strictly_complementary(const Bench& s, const VectorX<double>& lambda, const VectorX<double>& u) {
+  bool strict = lambda.norm() > 0;
+  for (Index r = 0; r < u.size(); ++r) strict = strict && (lambda[r] * s.R_inverse[r] > 1e-4 || u[r] > 1e-4);
+  return strict;
+}
+
 // Half lines alone are quadratic near a solution that is strictly complementary: one step, to the last digits.
 TEST(NewtonLaws, OneStepFromTheActiveSet) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Bench s(spec(3, 4, seed, seed % 2 == 0));
-    for (ConeRows& c : s.p.groups) c.cone = Cone::half_line;
-    std::fill(s.p.friction.begin(), s.p.friction.end(), 0);
+    const Bench s = half_lines(seed);
     PrimalNewton<double> newton;
     newton.analyze(s.p);
     ASSERT_TRUE(newton.start(s.p, s.tree).ok());
     VectorX<double> lambda(s.p.rows()), again(s.p.rows());
     ASSERT_TRUE(newton.minimise(s.R_inverse, s.b, 0, 100, lambda).report.ok());
     const VectorX<double> u = s.J * newton.motion() + s.b, solution = newton.motion();
-    bool strict = lambda.norm() > 0;
-    for (Index r = 0; r < u.size(); ++r) strict = strict && (lambda[r] * s.R_inverse[r] > 1e-4 || u[r] > 1e-4);
-    if (!strict) continue;
+    if (!strictly_complementary(s, lambda, u)) continue;
     ++judged;
     ASSERT_TRUE(newton.begin_at(lambda * (1 + 1e-6)).ok());  // a motion that keeps the active set
     ASSERT_TRUE(newton.minimise(s.R_inverse, s.b, 0, 1, again).report.ok());
@@ -193,9 +202,7 @@ TEST(NewtonLaws, AsManyIterationsAsWithADenseHessian) {
 TEST(NewtonLaws, AStartFromTheConesOfTheAnswerIsTheAnswer) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Bench s(spec(3, 4, seed, seed % 2 == 0));
-    for (ConeRows& c : s.p.groups) c.cone = Cone::half_line;
-    std::fill(s.p.friction.begin(), s.p.friction.end(), 0);
+    const Bench s = half_lines(seed);
     PrimalNewton<double> newton;
     newton.analyze(s.p);
     ASSERT_TRUE(newton.start(s.p, s.tree).ok());
@@ -205,9 +212,7 @@ TEST(NewtonLaws, AStartFromTheConesOfTheAnswerIsTheAnswer) {
     ASSERT_TRUE(newton.minimise(s.R_inverse, s.b, 0, 100, lambda).report.ok());
     const VectorX<double> w = newton.motion(), u = s.J * w + s.b;
     EXPECT_LT((s.M * w - s.J.transpose() * (lambda - origin)).norm(), 1e-12 * (1 + (s.M * w).norm())) << "seed " << seed;
-    bool strict = lambda.norm() > 0;
-    for (Index r = 0; r < u.size(); ++r) strict = strict && (lambda[r] * s.R_inverse[r] > 1e-4 || u[r] > 1e-4);
-    if (!strict) continue;
+    if (!strictly_complementary(s, lambda, u)) continue;
     ++judged;
     const VectorX<double> x = lambda - u;  // of another length, in the same cones
     ASSERT_TRUE(newton.begin_from(origin, x, s.R_inverse, s.b).ok());

@@ -1,21 +1,12 @@
 // Coefficients of two bodies alone, against scenes in which they hold for all; a house of light cards.
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "property_tests/unit/stepping_scenes.h"
-#include "property_tests/unit/temporary.h"
 
 namespace delassus::stepping_between_test {
 namespace {
 
 using namespace stepping;
-
-Scene read(const std::string& text) {
-  const auto file = test::temporary("between.yaml");
-  std::ofstream(file) << text;
-  return load_scene(file.string());
-}
 
 /// A brick on the ground, far away another, and one on a fixed table; all are thrown, turn and come down by 1 mm.
 std::string bricks(const std::string& contacts) {

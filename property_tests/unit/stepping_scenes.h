@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <fstream>
 
+#include "property_tests/unit/temporary.h"
 #include "simulation/observe.h"
 #include "simulation/step.h"
 
@@ -24,6 +26,13 @@ inline Body body(const std::string& name, Index parent, JointType type, double m
   b.com = com;
   b.inertia.diagonal() = moments;
   return b;
+}
+
+/// A scene file with this text.
+inline Scene read(const std::string& text) {
+  const auto file = test::temporary("scene.yaml");
+  std::ofstream(file) << text;
+  return load_scene(file.string());
 }
 
 /// At its neutral configuration, at rest, rows hard.

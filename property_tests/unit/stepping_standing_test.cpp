@@ -1,22 +1,14 @@
 // What stands in the world: links that are fixed to it and fixed boxes are touched like the ground.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
 
 #include "property_tests/unit/stepping_scenes.h"
-#include "property_tests/unit/temporary.h"
 
 namespace delassus::stepping_standing_test {
 namespace {
 
 using namespace stepping;
-
-Scene read(const std::string& text) {
-  const auto file = test::temporary("standing.yaml");
-  std::ofstream(file) << text;
-  return load_scene(file.string());
-}
 
 /// A box of 0.25 m that stands on z = 0 of the plane or of a fixed box, and is thrown along it.
 Scene thrown(const std::string& on, const V3& at = {0, 0, 0}) {

@@ -40,7 +40,8 @@ template <class T> class PrimalNewton {
     Report report;
     int iterations = 0;
   };
-  /// Minimises with R⁻¹ > 0 (m) and b (m) from the w it holds, until the step moves no row by more than `velocity` [m/s], or cannot.
+  /// Minimises with R⁻¹ > 0 (m) and b (m) from the w it holds, until λ after a whole step is what H said, to `velocity` [m/s] in R⁻¹λ of every
+  /// row or to rounding, or a step moves no row.
   Outcome minimise(const VectorX<T>& R_inverse, const VectorX<T>& b, double velocity, int iterations, VectorX<T>& lambda);
   /// Duality gap at w and the λ of minimise [J]; −1: M is singular.
   [[nodiscard]] double gap(const VectorX<T>& lambda);
