@@ -198,6 +198,7 @@ std::vector<ShapeContact> pair_contacts(const Placed& a, const Placed& b, const 
 /// Bounding spheres, in the world.
 std::vector<Ball> balls_of(const std::vector<Placed>& shapes, const Poses<double>& poses, const ContactSearch& search) {
   std::vector<Ball> out;
+  out.reserve(shapes.size());
   for (const Placed& p : shapes) {
     const Index object = p.body == ground ? search.standing[static_cast<std::size_t>(p.standing)].object : search.object.empty() ? 0 : search.object[static_cast<std::size_t>(p.body)];
     out.push_back({reference_of(poses, p.body) + p.pose.translation, p.radius, margin_of(search, p.body), object, rests(search, p.body)});
@@ -280,6 +281,7 @@ std::vector<std::pair<Index, Index>> neighbours(const Model& model, const std::v
 std::vector<ContactPoint> find_contacts(const Model& model, const Poses<double>& poses, const ContactSearch& search,
                                         std::vector<std::string>& notes) {
   std::vector<Placed> shapes;
+  shapes.reserve(model.bodies.size() + search.standing.size());
   for (std::size_t i = 0; i < model.bodies.size(); ++i)
     for (const Shape& s : model.bodies[i].shapes)
       shapes.push_back({static_cast<Index>(i), &s, Pose<double>{poses.rotation[i], poses.position[i]} * s.placement, bounding_radius(s), &s - model.bodies[i].shapes.data()});

@@ -41,6 +41,16 @@ bool near(const Ball& a, const Ball& b) {
 
 std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Ball>& balls, std::int64_t* tested) {
   if (std::all_of(balls.begin(), balls.end(), [&](const Ball& b) { return b.object == balls[0].object; })) return {};
+  std::vector<std::pair<std::size_t, std::size_t>> out;
+  const auto look = [&](std::size_t i, std::size_t j) {
+    if (tested != nullptr) ++*tested;
+    if (near(balls[std::min(i, j)], balls[std::max(i, j)])) out.emplace_back(std::min(i, j), std::max(i, j));
+  };
+  if (balls.size() <= few_balls) {
+    for (std::size_t i = 0; i < balls.size(); ++i)
+      for (std::size_t j = i + 1; j < balls.size(); ++j) look(i, j);
+    return out;
+  }
   std::map<int, Level> levels;
   std::vector<std::size_t> unbounded;
   const auto bounded = [&](std::size_t i) { return balls[i].centre.allFinite() && std::isfinite(2.0000001 * (balls[i].radius + balls[i].margin)); };
@@ -56,11 +66,6 @@ std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Ba
   }
   for (auto& [k, level] : levels) std::sort(level.balls.begin(), level.balls.end());
 
-  std::vector<std::pair<std::size_t, std::size_t>> out;
-  const auto look = [&](std::size_t i, std::size_t j) {
-    if (tested != nullptr) ++*tested;
-    if (near(balls[std::min(i, j)], balls[std::max(i, j)])) out.emplace_back(std::min(i, j), std::max(i, j));
-  };
   for (const auto& [own, mine] : levels)
     for (const auto& [cell, i] : mine.balls)
       for (auto level = levels.lower_bound(own); level != levels.end(); ++level) {

@@ -26,7 +26,7 @@ const std::vector<SolverRow>& solvers() {
        .equations = "(M + JᵀHJ) d = Jᵀλ − M w", .certificate = "duality gap, natural residual",
        .source = "Todorov 2014; Castro, Permenter, Han 2022", .cost = "O(n + m) an iteration with local loops",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = false, .hard_rows = false, .given_matrix = false, .make = make<NewtonConvex>},
-      {.name = "proximal", .summary = "hard and redundant rows by proximal points, Newton inside; exact Coulomb by shifting",
+      {.name = "proximal", .summary = "hard and redundant rows by proximal points, Newton inside; exact Coulomb by steps of Newton on Γ",
        .equations = "the same from λ with R⁻¹ + E and b = u + Γ e_n − (R⁻¹ + E) λ", .certificate = "natural residual",
        .source = "Rockafellar 1976; Acary, Cadoux 2013", .cost = "O(n + m) an iteration with local loops",
        .half_lines = true, .boxes = true, .relaxed = true, .exact = true, .hard_rows = true, .given_matrix = false, .make = make<ProximalNewton>},

@@ -6,6 +6,7 @@
 #include "generators/random.h"
 #include "generators/contact_families.h"
 #include "reference/definition.h"
+#include "simulation/solvers/friction_shift.h"
 #include "simulation/solvers/primal_newton.h"
 
 namespace delassus::newton_laws_test {
@@ -235,6 +236,62 @@ TEST(NewtonLaws, MassRatiosDoNotStallIt) {
     VectorX<double> lambda(s.p.rows());
     EXPECT_LT(newton.minimise(s.R_inverse, s.b, 0, 100, lambda).iterations, 40) << decades << " decades";
   }
+}
+
+// What Γ does to a pile: its impulses, their velocities, and Φ.
+struct Shifted {
+  Bench s;
+  PrimalNewton<double> newton;
+  VectorX<double> lambda, u;
+  explicit Shifted(std::uint64_t seed, bool joints) : s([&] { auto of = spec(4, 8, seed, joints); of.law = FrictionLaw::exact; return of; }()), lambda(s.p.rows()), u(s.p.rows()) {
+    newton.analyze(s.p);
+  }
+  VectorX<double> phi(const VectorX<double>& gamma) {
+    VectorX<double> b = s.b, out(gamma.size());
+    for (Index e = 0; e < gamma.size(); ++e) b[s.p.groups[static_cast<std::size_t>(e)].row] += gamma[e];
+    EXPECT_TRUE(newton.start(s.p, s.tree).ok() && newton.minimise(s.R_inverse, b, 0, 100, lambda).report.ok());
+    u = s.b + s.J * s.M.llt().solve(s.J.transpose() * lambda) + s.R_inverse.cwiseProduct(lambda);
+    for (Index e = 0; e < gamma.size(); ++e) {
+      const Index r = s.p.groups[static_cast<std::size_t>(e)].row;
+      out[e] = std::hypot(s.p.friction[static_cast<std::size_t>(r + 1)] * u[r + 1], s.p.friction[static_cast<std::size_t>(r + 2)] * u[r + 2]);
+    }
+    return out;
+  }
+};
+
+// A step on Γ solves (1 − Φ') δ = Φ(Γ) − Γ, Φ' by differences: to what is asked of GMRES and to theirs.
+TEST(NewtonLaws, AStepOnTheShiftSolvesTheDerivativeOfAnotherRoute) {
+  int judged = 0;
+  double slopes = 0;
+  for (const bool joints : {false, true})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Shifted x(seed, joints);
+      FrictionShift<double> shift;
+      shift.analyze(x.s.p);
+      shift.plain(x.s.p, x.s.b);
+      const auto groups = static_cast<Index>(x.s.p.groups.size());
+      VectorX<double> gamma(groups), step(groups);
+      for (Index e = 0; e < groups; ++e) gamma[e] = shift[static_cast<std::size_t>(e)];
+      const VectorX<double> at = x.phi(gamma);
+      MatrixX<double> D(groups, groups);
+      bool smooth = true;
+      const double h = 1e-6;
+      for (Index e = 0; e < groups; ++e) {
+        const VectorX<double> plus = x.phi(gamma + h * VectorX<double>::Unit(groups, e)), minus = x.phi(gamma - h * VectorX<double>::Unit(groups, e));
+        D.col(e) = (plus - minus) / (2 * h);
+        smooth = smooth && (plus - 2 * at + minus).norm() <= 1e-3 * h;
+      }
+      x.phi(gamma);
+      ASSERT_TRUE(shift.newton(x.s.p, x.newton, x.s.R_inverse, x.lambda, x.u, 1).ok());
+      bool cut = false;
+      for (Index e = 0; e < groups; ++e) step[e] = shift[static_cast<std::size_t>(e)] - gamma[e], cut = cut || shift[static_cast<std::size_t>(e)] == 0;
+      if (!smooth || cut) continue;
+      ++judged;
+      slopes = std::max(slopes, D.cwiseAbs().maxCoeff());
+      EXPECT_LE((step - D * step - (at - gamma)).norm(), 2e-3 * (at - gamma).norm()) << "seed " << seed << (joints ? ", joints" : "");
+    }
+  EXPECT_GT(judged, 10);
+  EXPECT_GT(slopes, 0.1);
 }
 
 }  // namespace

@@ -204,6 +204,22 @@ TEST(Contacts, stacks_of_cylinders_and_hulls_at_rest) {
   }
 }
 
+/// A box that is let go with an edge on the plane tips, slides and lies: its shift Γ creeps along four contacts until one opens. The
+/// fixed point alone ended at step 104.
+TEST(Contacts, a_tipped_box_comes_to_rest) {
+  Simulation<double> s(read("gravity: [0, 0, -9.81]\nboxes:\n  - {name: box, mass: 1, size: [0.1, 0.1, 0.1], pose: {xyz: [0, 0, 0.6], rpy: [0.2, 0.1, 0]}}\n"
+                                  "ground: {z: 0.525}\ncontacts: {detect: true, friction: 0.5}\n"),
+                       step_of(1e-3));
+  int iterations = 0;
+  for (int k = 0; k < 500; ++k) {
+    ASSERT_TRUE(s.step().ok()) << k << ": " << s.last().message;
+    iterations += s.last().iterations;
+  }
+  EXPECT_LE(iterations, 20 * 500);
+  EXPECT_LT(s.state().nu.norm(), 1e-9);
+  EXPECT_NEAR(s.state().q[2], 0.575, 1e-9);
+}
+
 /// Dry friction holds a torque below its effort without any creep, and leaves (τ − f)/I of one above it.
 TEST(Contacts, joint_friction) {
   Model m;

@@ -113,17 +113,27 @@ TEST(Relations, two_scenes_that_do_not_meet_are_two_scenes) {
   EXPECT_TRUE(z.nu.tail(y.nu.size()) == y.nu);
 }
 
-/// The mirror image of a scene in the plane y = 0 is the mirror image of its motion, to rounding that grows with the run.
+/// The mirror image of a scene in the plane y = 0 is the mirror image of its motion, to rounding that grows with the run. Where four
+/// corners meet the ground at once the relaxed law is asked: with the exact one their motion is not unique (three solvers are 10⁻² m/s
+/// apart there, each with a residual of 10⁻¹³ m/s); where one does, the exact law is.
 TEST(Relations, mirrors) {
-  Scene a = thrown_box(), b = a;
-  a.motion.nu << 0.3, 0.5, 1, 1, 0.5, -1;
-  b.motion.nu << -0.3, 0.5, -1, 1, -0.5, -1;  // ω is axial
-  const State<double> x = run(a, step_of(1e-3), 60), y = run(b, step_of(1e-3), 60);
-  ASSERT_GT(x.q.size(), 0);
-  ASSERT_GT(y.q.size(), 0);
-  VectorX<double> image = y.q;
-  image[1] = -image[1], image[4] = -image[4], image[6] = -image[6];
-  EXPECT_LT((x.q - image).norm(), 2 * 1e-9 * 1e-3 * 60 * 61 / 2);  // each step of both: a residual of 1e-10 m/s at a lever of 0.1 m, which stays
+  for (const bool flat : {true, false}) {
+    Scene a = thrown_box();
+    a.motion.nu << 0.3, 0.5, 1, 1, 0.5, -1;
+    if (!flat) a.q.tail<4>() = Eigen::Vector4d(1, 0.2, 0.3, 0.1).normalized(), a.q[2] = 0.16;
+    Scene b = a;
+    b.motion.nu << -0.3, 0.5, -1, 1, -0.5, -1;  // ω is axial
+    b.q[4] = -b.q[4], b.q[6] = -b.q[6];
+    Settings settings = step_of(1e-3);
+    if (flat) settings.friction = FrictionLaw::relaxed;
+    const State<double> x = run(a, settings, 60), y = run(b, settings, 60);
+    ASSERT_GT(x.q.size(), 0);
+    ASSERT_GT(y.q.size(), 0);
+    EXPECT_GT(x.nu[5], -1) << "nothing was met";
+    VectorX<double> image = y.q;
+    image[1] = -image[1], image[4] = -image[4], image[6] = -image[6];
+    EXPECT_LT((x.q - image).norm(), 2 * 1e-9 * 1e-3 * 60 * 61 / 2) << flat;  // each step of both: a residual of 1e-10 m/s at a lever of 0.1 m, which stays
+  }
 }
 
 /// Painlevé's rod: a thin rod that slides at a steep angle with μ above the critical value has no acceleration; a step has one.

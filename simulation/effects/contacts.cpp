@@ -8,8 +8,10 @@
 namespace delassus::simulation {
 namespace {
 
-template <class T> Poses<double> in_double(const Poses<T>& p) {
-  Poses<double> out;
+/// The frames in double: themselves, or written to `out`.
+const Poses<double>& in_double(const Poses<double>& p, Poses<double>&) { return p; }
+template <class T> const Poses<double>& in_double(const Poses<T>& p, Poses<double>& out) {
+  out = {};
   out.tree = p.tree;
   const auto each = [](const auto& x) { return x.unaryExpr([](const T& v) { return static_cast<double>(v); }).eval(); };
   for (const auto& R : p.rotation) out.rotation.push_back(each(R));
@@ -69,7 +71,8 @@ template <class T> void Detection<T>::look_ahead(Moment<T>& now, const Poses<dou
 }
 
 template <class T> void Detection<T>::detect(Moment<T>& now) {
-  const Poses<double> at = in_double(now.poses());
+  Poses<double> rounded;
+  const Poses<double>& at = in_double(now.poses(), rounded);
   look_ahead(now, at);
   search_.resting = now.resting;
   notes_.clear();
@@ -104,7 +107,8 @@ template <class T> Contacts<T>::Contacts(const Scene& scene) {
 
 template <class T> void Contacts<T>::detect(Moment<T>& now) {
   if (listed_.empty()) return;
-  const Poses<double> at = in_double(now.poses());
+  Poses<double> rounded;
+  const Poses<double>& at = in_double(now.poses(), rounded);
   for (const Listed& c : listed_) {
     const Pose<double> other = relative_pose(at, c.body, c.other);
     const auto i = static_cast<std::size_t>(c.body);

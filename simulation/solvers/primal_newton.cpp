@@ -138,6 +138,17 @@ template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, V
   return report;
 }
 
+template <class T> Report PrimalNewton<T>::linearise(const VectorX<T>& R_inverse, const VectorX<T>& lambda) {
+  curve(R_inverse, u_, lambda);
+  weights_.assign(H_);
+  return factor_.update_weights(weights_);
+}
+
+template <class T> void PrimalNewton<T>::respond(const VectorX<T>& x, VectorX<T>& Jd) {
+  tau_.setZero();
+  factor_.solve(x.data(), tau_.data(), Jd.data(), d_.data(), work_->data());
+}
+
 // H x at the blocks of the last curve.
 template <class T> void PrimalNewton<T>::multiply_hessian(const VectorX<T>& x, VectorX<T>& y) const {
   for (std::size_t e = 0; e < problem_->groups.size(); ++e) {

@@ -47,6 +47,16 @@ template <class T> class PrimalNewton {
   [[nodiscard]] double gap(const VectorX<T>& lambda);
   [[nodiscard]] const VectorX<T>& motion() const { return w_; }  ///< w, shape n
 
+  // How λ answers a small change of b, after minimise.
+  /// H and the factor of M + JᵀHJ at the λ it left.
+  [[nodiscard]] Report linearise(const VectorX<T>& R_inverse, const VectorX<T>& lambda);
+  /// J (M + JᵀHJ)⁻¹ Jᵀ x.
+  void respond(const VectorX<T>& x, VectorX<T>& Jd);
+  /// y = H x.
+  void multiply_hessian(const VectorX<T>& x, VectorX<T>& y) const;
+  /// Whether λ of a Coulomb group is inside its cone.
+  [[nodiscard]] bool sticks(std::size_t group) const { return projected_[group].region == Region::inside; }
+
   // One step taken apart, for tests of the Hessian.
   /// λ(u) with its blocks H in hessian().
   void evaluate(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
@@ -58,7 +68,6 @@ template <class T> class PrimalNewton {
   void take(const VectorX<T>& R_inverse);
   void impulses(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
   void curve(const VectorX<T>& R_inverse, const VectorX<T>& u, const VectorX<T>& lambda);
-  void multiply_hessian(const VectorX<T>& x, VectorX<T>& y) const;
   T length(const VectorX<T>& R_inverse);
   bool is_expected(const VectorX<T>& R_inverse, const VectorX<T>& b, const VectorX<T>& lambda, double velocity) const;
   const ContactProblem<T>* problem_ = nullptr;

@@ -4,16 +4,18 @@ namespace delassus::simulation {
 
 template <class T> void ProximalNewton<T>::do_analyze(const ContactProblem<T>& p) {
   if (p.mechanism) newton_.analyze(p);
+  gamma_.analyze(p);
   for (VectorX<T>* const v : {&R_inverse_, &b_, &x_, &before_}) v->setZero(p.rows());
 }
 
 // b = (G λ + g − target + Γ e_n) − E λ of the last λ: its velocity u + Γ e_n − (R⁻¹ + E) λ.
 template <class T> void ProximalNewton<T>::expand(const ContactProblem<T>& p, const VectorX<T>& lambda) {
-  for (const ConeRows& c : p.groups) {
+  for (std::size_t e = 0; e < p.groups.size(); ++e) {
+    const ConeRows& c = p.groups[e];
     b_.segment(c.row, c.rows).setZero();
     x_.segment(c.row, c.rows).setZero();
     if (p.is_off(c)) continue;
-    if (c.cone == Cone::coulomb && p.law == FrictionLaw::exact) b_[c.row] = tangent_norm(this->u_.data() + c.row, p.friction.data() + c.row, c.rows);
+    b_[c.row] = gamma_[e];
     const T gamma = this->op_.diagonal().segment(c.row, c.rows).mean();
     for (Index r = c.row; r < c.row + c.rows; ++r) {
       b_[r] += this->u_[r];
@@ -50,16 +52,44 @@ template <class T> void ProximalNewton<T>::Weight::follow(double reached, int in
   before_ = reached;
 }
 
+// How Γ goes on: see the header.
+template <class T> typename ProximalNewton<T>::Steps::Next ProximalNewton<T>::Steps::after(double reached) {
+  if (made_ > 0 && !(reached < before_)) {
+    if (share == 1 && made_ < watched) return ++made_, Next::newton;
+    share = std::max(least_share, share / 4);
+    made_ = 0;
+    return Next::back;
+  }
+  const bool slow = made_ > 0 || reached > 0.5 * before_;
+  if (made_ > 0) share = std::min(1.0, 2 * share);
+  before_ = reached;
+  made_ = slow ? 1 : 0;
+  return slow ? Next::first : Next::plain;
+}
+
 template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem<T>& p, const Wanted& wanted, VectorX<T>& lambda) {
+  using Next = typename Steps::Next;
   SolverReport report;
   Report made = newton_.start(p, this->op_.tree());
   Weight weight;
+  Steps steps;
   typename PrimalNewton<T>::Outcome inner;
   while (made.ok()) {
-    const double reached = this->judged(p, lambda).natural;
+    double reached = this->judged(p, lambda).natural;
     if (reached <= wanted.velocity) return report;
     if (report.iterations >= wanted.iterations) break;
-    weight.follow(reached, inner.iterations);
+    const Next next = p.law == FrictionLaw::exact ? steps.after(reached) : Next::plain;
+    if (next == Next::plain || next == Next::first) weight.follow(reached, inner.iterations);
+    if (next == Next::first) saved_ = lambda;
+    if (next == Next::back) {
+      lambda = saved_;
+      reached = this->judged(p, lambda).natural;
+    }
+    const bool newton = next == Next::first || next == Next::newton;
+    if (!newton || !gamma_.newton(p, newton_, R_inverse_, lambda, this->u_, steps.share).ok()) {
+      gamma_.plain(p, this->u_);
+      if (newton) steps.stop();
+    }
     shift(p, weight.epsilon);
     before_ = lambda;
     expand(p, lambda);
@@ -73,6 +103,7 @@ template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem
     if (made.status == Status::lost_pivot && weight.epsilon < 1) {
       lambda = before_;
       made = {};
+      steps.stop();
       weight.rise();
     }
   }
