@@ -107,7 +107,7 @@ void add_simulate_options(options::Command& c, SimulateOptions& o, const options
   c.add_option_function("--halvings", [&m](const std::string& text) { m.halvings = std::stoi(text); }, "with --simulate: how often the step is halved, 1 to 12 (default: 5); references take two more")
       ->check([](const std::string& text) { return text.size() <= 2 && options::whole(1)(text).empty() && std::stoi(text) <= 12 ? std::string() : "is '" + text + "' (accepted: a whole number from 1 to 12; a smaller --step for smaller ones)"; })
       ->needs(simulate);
-  c.add_option("--integrator", m.integrators, "with --simulate: only these: euler, runge_kutta, dormand_prince")->check(options::one_of(names))->needs(simulate);
+  c.add_option("--integrator", m.integrators, "with --simulate: only these (see `delassus list integrators`)")->check(options::one_of(names))->needs(simulate);
   c.add_option("--solver", m.solvers, "with --simulate: only these solvers of contacts, limits and dry friction, by every law that they solve")->needs(simulate);
   c.add_option("--tolerance", m.tolerances, "with --simulate: asked of solvers [m/s], of the operator of equations, of error control; when left out 1e-6 and 1e-10, of error control 1e-3 … 1e-11")
       ->check(options::above(0, ""))->needs(simulate);

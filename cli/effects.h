@@ -1,4 +1,4 @@
-// Which physical effects a scene calls for, which it does not, and why: read off the scene, for people.
+// Which physical effects a scene calls for, which it does not, and why: read off the scene, for people. And how scenes are stepped.
 #pragma once
 
 #include "cli/common.h"
@@ -9,5 +9,9 @@ namespace delassus::cli {
 [[nodiscard]] json effects_list();
 /// [{name, called_for, why}] in the order of the table.
 [[nodiscard]] json effects_json(const Scene& scene);
+
+/// [{name, summary, order, takes, controlled, source}]: the table of integrators.
+[[nodiscard]] json integrators_list();
+void print_integrators_markdown(const json& integrators);
 
 }  // namespace delassus::cli

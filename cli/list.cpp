@@ -76,7 +76,7 @@ struct Table {
 };
 constexpr Table tables[] = {{"operators", operators_json}, {"references", references_json}, {"families", families_json},
                             {"laws", laws_json},           {"scenes", scenes_json},         {"defects", defects_json},     {"effects", effects_list},
-                            {"solvers", solvers_list}};
+                            {"solvers", solvers_list},     {"integrators", integrators_list}};
 
 void print_table(const json& rows) {
   std::size_t width = 0;
@@ -101,6 +101,7 @@ void print_markdown(const std::string& table, const json& rows) {
     return;
   }
   if (table == "solvers") return print_solvers_markdown(rows);
+  if (table == "integrators") return print_integrators_markdown(rows);
   if (table == "effects") {
     std::printf("| effect | what it is | called for by | energy |\n|---|---|---|---|\n");
     for (const json& r : rows)
@@ -141,7 +142,7 @@ int list(const std::string& wanted, bool as_json, bool as_markdown) {
 }  // namespace
 
 void add_list(options::Command& app, Run& run) {
-  options::Command* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects, solvers");
+  options::Command* c = app.add_subcommand("list", "print the tables: operators, references, families, laws, scenes, defects, effects, solvers, integrators");
   auto table = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false), as_markdown = std::make_shared<bool>(false);
   std::vector<std::string> names;

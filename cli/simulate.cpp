@@ -196,10 +196,15 @@ void print_ran(const SimulateCommand& o, const Ran& r) {
     std::printf("accuracy  %lld steps taken, %lld rejected; largest error %.2g of %g a second [m, rad, m/s, rad/s]\n", static_cast<long long>(r.taken),
                 static_cast<long long>(r.rejected), r.error, o.settings.error);
   if (r.drift > 0) std::printf("drift     at most %.2g m or rad a step, %.2g after closing\n", r.drift, r.left);
-  if (r.most_rows > 0)
+  const double iterations = r.steps ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0;
+  if (simulation::find_integrator(o.settings.integrator).tableau != nullptr) {
+    if (r.most_rows > 0) std::printf("rows      at most %lld\n", static_cast<long long>(r.most_rows));
+    if (r.iterations > 0)
+      std::printf("stages    %.1f iterations a step; last changes at most %.1g of the largest velocity (or of 1 m/s or rad/s)\n", iterations, r.residual);
+  } else if (r.most_rows > 0) {
     std::printf("rows      at most %lld, in at most %lld island%s; solver %.1f iterations a step, residual at most %.2g m/s\n", static_cast<long long>(r.most_rows),
-                static_cast<long long>(r.most_islands), r.most_islands == 1 ? "" : "s",
-                r.steps ? static_cast<double>(r.iterations) / static_cast<double>(r.steps) : 0.0, r.residual);
+                static_cast<long long>(r.most_islands), r.most_islands == 1 ? "" : "s", iterations, r.residual);
+  }
   if (r.problems > 0) std::printf("captured  %lld contact problems in %s\n", static_cast<long long>(r.problems), o.capture.c_str());
   for (const std::string& file : r.unsolved) std::printf("unsolved  %s: the problem that no solver could do; docs/solvers.md says how to replay it\n", file.c_str());
   if (!r.last.ok())
@@ -243,7 +248,7 @@ void add_simulate(options::Command& app, Run& run) {
   const options::Option* step = c->add_option("--step", o->settings.step, "step [s]; with --accuracy where steps land, 1/60 or less when left out")->check(options::above(0, "s"))->capture_default_str();
   std::vector<std::string> integrators;
   for (const auto& row : simulation::integrators()) integrators.emplace_back(row.name);
-  const options::Option* integrator = c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta, dormand_prince: explicit, of orders 4 and 5, scenes without rows")->check(options::one_of(integrators))->capture_default_str();
+  const options::Option* integrator = c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta, dormand_prince: explicit, of orders 4 and 5; implicit_midpoint, sdirk4: implicit, of orders 2 and 4, springs and dampers of any stiffness; all but euler for scenes without rows in cones (see `delassus list integrators`)")->check(options::one_of(integrators))->capture_default_str();
   c->add_option("--accuracy", o->settings.error, "the steps follow their error: at most this much in a second of them [m, rad, m/s, rad/s]; by dormand_prince, for scenes without rows")->check(options::above(0, ""));
   c->add_option("--gravity", o->gravity, "acceleration along −z instead of the scene's [m/s²]: a robot's file has none")->check(options::at_least(0, "m/s²"));
   c->add_option("--record", o->record, "FILE.csv or FILE.json: q, ν, energies, rows, residual and drift of every step; FILE.html: a page that plays the run");

@@ -167,6 +167,7 @@ if "WARNING" in printed([delassus, "check", "cassie", "--digits", "--damping", "
     failures.append("check --digits warns of a problem that lcaba solves")
 printed([delassus, "list", "effects"], "gravity", "armature")
 printed([delassus, "list", "solvers", "--json"], "newton_convex", "exact Coulomb")
+printed([delassus, "list", "integrators"], "sdirk4", "L-stable")
 
 
 # A scene that moves.
@@ -182,6 +183,7 @@ printed([delassus, "simulate", moving / "racket.yaml", "--accuracy", "1e-8"], "s
 printed([delassus, "simulate", moving / "swing.yaml", "--accuracy", "1e-6", "--duration", "0.2"], "steps taken", "drift")
 refused([delassus, "simulate", moving / "slide.yaml", "--accuracy", "1e-8"], "contacts, contact friction", "without an accuracy")
 refused([delassus, "simulate", moving / "racket.yaml", "--accuracy", "0"], "--accuracy", "'0'")
+printed([delassus, "simulate", moving / "racket.yaml", "--integrator", "sdirk4", "--duration", "0.1s"], "iterations a step", "energy")
 refused([delassus, "simulate", moving / "racket.yaml", "--accuracy", "1e-8", "--integrator", "euler"], "steps of one length", "dormand_prince")
 short = ["--duration", "0.125", "--step", "0.015625", "--halvings", "2", "--no-time"]
 printed([delassus, "accuracy", moving / "racket.yaml", "--simulate", *short], "reference by dormand_prince", "euler, order 1", "runge_kutta, order 4", "dormand_prince, controlled")

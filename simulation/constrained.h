@@ -1,9 +1,9 @@
-// Accelerations under rows that always hold, and the way back onto them: what explicit methods need for loops.
+// Accelerations under rows that always hold, and the way back onto them: what methods with stages need for loops.
 //
 //   M ν̇ − Jᵀλ = f,   J ν̇ = −J̇ν                          hard rows (paper, equations 2 and 5 with a_des = −J̇ν)
 //   q ← q ⊕ d,   min ‖d‖_M   with  J d = −φ(q)            after a step: chord steps, as closing.h
 //   ν ← ν + δ,   min ‖δ‖_M   with  J δ = −J ν             at that q
-// The way back is shorter than the error of a step, so the order of the method is kept.
+// The way back is shorter than the error of a step, so the order of the method is kept. M is M̂ where stages are implicit (runge_kutta.h).
 // Axes     ν̇ of floating joints is asked for with ω × v left to the axes (runge_kutta.h): J ν̇ = −(J̇ν − J (0; ω × v)).
 // Cost     an update and a solve of the operator for accelerations; to go back up to two updates and four solves.
 // Source   paper, section II; E. Hairer, C. Lubich, G. Wanner 2006, IV.4 (projection).

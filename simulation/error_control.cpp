@@ -20,7 +20,7 @@ typename ErrorControl<T>::End ErrorControl<T>::operator()(const T& h, State<T>& 
     const bool evaluated = method_.attempt(T(step), acceleration);
     if (!method_.started()) return End::evaluation_failed;
     const double rate = evaluated ? static_cast<double>(method_.error()) / step : HUGE_VAL, off = rate / tolerance_;
-    const double factor = off > 0 ? std::clamp(0.9 / std::pow(off, 0.25), 0.2, 5.0) : off == 0 ? 5.0 : 0.2;
+    const double factor = off > 0 ? std::clamp(0.9 / std::pow(off, falls_), 0.2, 5.0) : off == 0 ? 5.0 : 0.2;
     if (off <= 1) {
       method_.accept(end_);
       done = last ? interval : done + step;

@@ -22,14 +22,14 @@ template <class T> class ErrorControl {
     double error = 0;             ///< largest ‖e‖∞/τ of those taken
   };
 
-  ErrorControl(const Model& model, const Tableau& pair, double tolerance) : method_(model, pair), tolerance_(tolerance) {}
+  ErrorControl(const Model& model, const Tableau& pair, double tolerance) : method_(model, pair), tolerance_(tolerance), falls_(1.0 / pair.estimate) {}
   /// Over an interval of h; where it does not end well the state is as it was. state.trial is the first step tried, 0: all of h.
   End operator()(const T& h, State<T>& state, const typename RungeKutta<T>::Acceleration& acceleration);
   [[nodiscard]] const Spent& spent() const { return spent_; }  ///< in the last interval
 
  private:
   RungeKutta<T> method_;
-  double tolerance_;
+  double tolerance_, falls_;
   Spent spent_;
   State<T> end_;
 };

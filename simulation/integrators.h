@@ -16,7 +16,7 @@ struct IntegratorRow {
   std::string_view name, summary, source;
   int order;   ///< global error h^order on smooth scenes
   Takes takes;
-  const Tableau* tableau;  ///< of explicit methods; nullptr: semi-implicit
+  const Tableau* tableau;  ///< of methods with stages; nullptr: semi-implicit
   bool controlled;         ///< a pair: its steps may follow their error
 };
 

@@ -122,7 +122,7 @@ template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, Vec
   m.part.take(*now.problem);
   m.part.gather(*now.force, m.force);
   m.part.gather(now.state->nu, m.state.nu);
-  m.now.h = now.h, m.now.weight = now.weight;
+  m.now.h = now.h, m.now.ahead = now.ahead, m.now.weight = now.weight;
   StepReport out = m.path->velocities(m.now, m.change, m.impulses);
   if (!out.ok()) return out;
   m.part.scatter(m.change, change);

@@ -25,8 +25,8 @@ struct StepReport {
   std::string_view path;     ///< the path taken
   Index rows = 0;            ///< rows of this step
   Index islands = 0;         ///< mechanisms with rows that were solved apart
-  int iterations = 0;        ///< of a solver
-  double residual = 0;       ///< of a solver [m/s]
+  int iterations = 0;        ///< of a solver, or of implicit stages
+  double residual = 0;       ///< of a solver [m/s]; of implicit stages what the last change was of the largest velocity, at least of 1 m/s or rad/s
   int taken = 0, rejected = 0; ///< steps of error control within h
   double error = 0;            ///< largest of those taken, of a second [m, rad, m/s, rad/s]
   double drift = 0, left = 0;  ///< largest |φ| that the step made, and that closing left [m or rad]

@@ -1,5 +1,7 @@
 #include "simulation/runge_kutta.h"
 
+#include <algorithm>
+
 #include "algorithms/kit/counted.h"
 #include "simulation/rotations.h"
 
@@ -12,27 +14,19 @@ template <class T> Vector3<T> tangent_rate(const Vector3<T>& u, const Vector3<T>
   return omega + once / T(2) + twice / T(12);
 }
 
+/// Largest |after − before|.
+template <class T> T largest_change(const VectorX<T>& before, const VectorX<T>& after) {
+  using std::abs;
+  T out(0);
+  for (Index k = 0; k < before.size(); ++k) {
+    const T by = abs(after[k] - before[k]);
+    if (!(by == by)) return by;  // NaN
+    if (by > out) out = by;
+  }
+  return out;
+}
+
 }  // namespace
-
-const Tableau& classical() {
-  static const Tableau t{4, {{}, {0.5}, {0, 0.5}, {0, 0, 1}}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}, {}, false};
-  return t;
-}
-
-const Tableau& dormand_prince() {
-  static const Tableau t{7,
-                         {{},
-                          {1.0 / 5},
-                          {3.0 / 40, 9.0 / 40},
-                          {44.0 / 45, -56.0 / 15, 32.0 / 9},
-                          {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-                          {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-                          {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}},
-                         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84, 0},
-                         {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40},
-                         true};
-  return t;
-}
 
 template <class T> RungeKutta<T>::RungeKutta(const Model& model, const Tableau& tableau) : tableau_(&tableau) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -40,6 +34,7 @@ template <class T> RungeKutta<T>::RungeKutta(const Model& model, const Tableau& 
     joints_.push_back({type, model.first_q[i], model.first_dof[i], dof_count(type)});
   }
   zero_ = x_ = w_ = w_stage_ = VectorX<T>::Constant(model.dofs(), T(0));
+  if (tableau.implicit()) x_base_ = w_base_ = x_then_ = w_then_ = zero_;
   x_rate_.assign(static_cast<std::size_t>(tableau.stages), zero_);
   w_rate_ = x_rate_;
 }
@@ -64,18 +59,56 @@ template <class T> void RungeKutta<T>::place(const VectorX<T>& x, const VectorX<
   }
 }
 
-template <class T> bool RungeKutta<T>::rates(const VectorX<T>& x, const VectorX<T>& w, const Acceleration& acceleration, int stage) {
-  VectorX<T>&x_rate = x_rate_[static_cast<std::size_t>(stage)], &w_rate = w_rate_[static_cast<std::size_t>(stage)];
+/// ẋ = A(x) w.
+template <class T> void RungeKutta<T>::tangent(const VectorX<T>& x, const VectorX<T>& w, VectorX<T>& out) const {
+  out = w;
+  for (const Joint& j : joints_)
+    if (j.type == JointType::spherical || j.type == JointType::floating)
+      out.template segment<3>(j.dof) = tangent_rate(three_of(x.data() + j.dof), three_of(w.data() + j.dof));
+}
+
+/// ẇ at x and w, floating joints in the axes of the joint; of implicit stages what was there is the guess.
+template <class T> bool RungeKutta<T>::rate(const VectorX<T>& x, const VectorX<T>& w, const T& g, bool again, const Acceleration& acceleration, VectorX<T>& out) {
   place(x, w, at_);
-  if (!acceleration(at_, w_rate)) return false;
-  x_rate = w;
-  for (const Joint& j : joints_) {
-    if (j.type != JointType::spherical && j.type != JointType::floating) continue;
-    x_rate.template segment<3>(j.dof) = tangent_rate(three_of(x.data() + j.dof), three_of(w.data() + j.dof));
-    if (j.type == JointType::floating)
-      w_rate.template segment<3>(j.dof + 3) = rotate(at_.q.data() + j.q + 3, three_of(w_rate.data() + j.dof + 3), false);
-  }
+  const auto turn_all = [&](bool inverse) {
+    for (const Joint& j : joints_)
+      if (j.type == JointType::floating) out.template segment<3>(j.dof + 3) = rotate(at_.q.data() + j.q + 3, three_of(out.data() + j.dof + 3), inverse);
+  };
+  if (g != T(0)) turn_all(true);
+  if (!acceleration(at_, {g, again}, out)) return false;
+  turn_all(false);
   return true;
+}
+
+template <class T> bool RungeKutta<T>::explicit_stage(int stage, const Acceleration& acceleration) {
+  tangent(x_, w_stage_, x_rate_[static_cast<std::size_t>(stage)]);
+  return rate(x_, w_stage_, T(0), false, acceleration, w_rate_[static_cast<std::size_t>(stage)]);
+}
+
+template <class T> bool RungeKutta<T>::implicit_stage(int stage, const Acceleration& acceleration) {
+  const T g = h_ * T(tableau_->a[stage][stage]);
+  VectorX<T>&x_rate = x_rate_[static_cast<std::size_t>(stage)], &a = w_rate_[static_cast<std::size_t>(stage)];
+  x_base_ = x_, w_base_ = w_stage_;
+  a = stage > 0 ? w_rate_[static_cast<std::size_t>(stage - 1)] : zero_;
+  w_stage_ = w_base_ + g * a, x_ = x_base_ + g * w_stage_;
+  T before(0);
+  for (int k = 0; k < most_iterations; ++k) {
+    // a ← M̂⁻¹(f + D a), D = M̂ − M
+    if (!rate(x_, w_stage_, g, k > 0, acceleration, a)) return false;
+    ++iterations_;
+    w_then_ = w_base_ + g * a;
+    tangent(x_, w_then_, x_rate);
+    x_then_ = x_base_ + g * x_rate;
+    const T change = std::max(largest_change(w_stage_, w_then_), largest_change(x_, x_then_)), size = std::max(T(1), largest_change(zero_, w_then_));
+    x_.swap(x_then_), w_stage_.swap(w_then_);
+    change_ = change / size;
+    if (change_ <= T(settled) || (k > 0 && change_ <= T(within) && change + change >= before)) {
+      left_ = std::max(left_, change_);
+      return true;
+    }
+    before = change;
+  }
+  return false;
 }
 
 template <class T> void RungeKutta<T>::start(const State<T>& state) {
@@ -83,7 +116,9 @@ template <class T> void RungeKutta<T>::start(const State<T>& state) {
   w_ = state.nu;
   for (const Joint& j : joints_)
     if (j.type == JointType::floating) w_.template segment<3>(j.dof + 3) = rotate(state.q.data() + j.q + 3, three_of(state.nu.data() + j.dof + 3), false);
-  started_ = false;
+  started_ = tableau_->implicit();
+  iterations_ = 0;
+  left_ = T(0);
 }
 
 /// x and w at y₀ + h Σ weight_j k_j.
@@ -99,11 +134,15 @@ template <class T> void RungeKutta<T>::sum(const double* weights, int stages) {
 
 template <class T> bool RungeKutta<T>::attempt(const T& h, const Acceleration& acceleration) {
   h_ = h;
-  started_ = started_ || rates(zero_, w_, acceleration, 0);
-  if (!started_) return false;
-  for (int k = 1; k < tableau_->stages; ++k) {
-    sum(tableau_->a[k], k);
-    if (!rates(x_, w_stage_, acceleration, k)) return false;
+  stage_ = 0;
+  if (!started_) {
+    sum(tableau_->a[0], 0);
+    started_ = explicit_stage(0, acceleration);
+    if (!started_) return false;
+  }
+  for (stage_ = tableau_->implicit() ? 0 : 1; stage_ < tableau_->stages; ++stage_) {
+    sum(tableau_->a[stage_], stage_);
+    if (!(tableau_->implicit() ? implicit_stage(stage_, acceleration) : explicit_stage(stage_, acceleration))) return false;
   }
   sum(tableau_->b, tableau_->stages);
   return true;
@@ -131,8 +170,8 @@ template <class T> void RungeKutta<T>::accept(State<T>& end) {
   q_ = end.q = at_.q;
   end.nu = at_.nu;
   w_ = w_stage_;
-  started_ = tableau_->first_is_last;
-  if (!started_) return;
+  started_ = tableau_->first_is_last || tableau_->implicit();
+  if (!tableau_->first_is_last) return;
   x_rate_[0] = w_;
   w_rate_[0] = w_rate_[static_cast<std::size_t>(tableau_->stages - 1)];
 }

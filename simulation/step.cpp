@@ -49,7 +49,14 @@ Simulation<T>::Simulation(const Scene& scene, const Settings& settings)
   check_rows(scene, plan_, integrator);
   if (settings.error != 0 && !(integrator.controlled && std::isfinite(settings.error) && settings.error > 0)) refuse_error(scene, settings);
   if (integrator.tableau == nullptr) return;
-  now_.h = T(0), now_.weight = T(1);
+  now_.h = now_.ahead = T(0), now_.weight = T(1);
+  acceleration_ = [this](const State<T>& at, const Stage& stage, VectorX<T>& out) { return accelerations(at, stage, out); };
+  if (integrator.tableau->implicit()) {
+    acceleration_ = [this](const State<T>& at, const Stage& stage, VectorX<T>& out) { return implicit_accelerations(at, stage, out); };
+    now_.start();
+    for (auto* term : plan_.inertias) term->add_inertia(now_);
+    armature_ = problem_.armature;
+  }
   if (plan_.mechanism->structure()->rows > 0) constrained_ = std::make_unique<Constrained<T>>(plan_.model, *plan_.mechanism, settings.op, settings.accuracy);
   if (settings.error > 0) {
     control_ = std::make_unique<ErrorControl<T>>(plan_.model, *integrator.tableau, settings.error);
@@ -106,9 +113,22 @@ template <class T> const StepReport& Simulation<T>::euler() {
   return report_;
 }
 
-template <class T> bool Simulation<T>::accelerations(const State<T>& at, VectorX<T>& out) {
+template <class T> bool Simulation<T>::accelerations(const State<T>& at, const Stage&, VectorX<T>& out) {
   now_.state = &at;
   gather();
+  return solve_accelerations(out);
+}
+
+/// M̂ a⁺ − Jᵀλ = f + (M̂ − M) a of an implicit stage: M̂ − M is the diagonal of what is implicit.
+template <class T> bool Simulation<T>::implicit_accelerations(const State<T>& at, const Stage& stage, VectorX<T>& a) {
+  now_.state = &at;
+  now_.h = stage.g, now_.again = stage.again;
+  gather();
+  for (std::size_t k = 0; k < armature_.size(); ++k) force_[static_cast<Index>(k)] += (problem_.armature[k] - armature_[k]) * a[static_cast<Index>(k)];
+  return solve_accelerations(a);
+}
+
+template <class T> bool Simulation<T>::solve_accelerations(VectorX<T>& out) {
   if (!constrained_) {
     report_ = plan_.path->velocities(now_, out, impulses_);
     return report_.ok();
@@ -136,17 +156,30 @@ template <class T> bool Simulation<T>::end_at(State<T>& next) {
 
 template <class T> const StepReport& Simulation<T>::runge_kutta() {
   stages_->start(state_);
-  if (!stages_->attempt(T(settings_.step), [this](const State<T>& at, VectorX<T>& out) { return accelerations(at, out); })) return report_;
+  if (!stages_->attempt(T(settings_.step), acceleration_)) return ended_at_stage();
   next_ = state_;
   stages_->accept(next_);
   (void)end_at(next_);
+  report_.iterations = stages_->iterations(), report_.residual = static_cast<double>(stages_->left());
+  return report_;
+}
+
+/// An evaluation failed, or an implicit stage did not converge: then it may have gone where nothing can be evaluated.
+template <class T> const StepReport& Simulation<T>::ended_at_stage() {
+  if (stages_->iterations() == 0) return report_;
+  const std::string status = report_.ok() ? "" : ", an evaluation ended with " + std::string(name(report_.report.status));
+  report_.report.status = Status::not_converged;
+  report_.iterations = stages_->iterations(), report_.residual = static_cast<double>(stages_->change());
+  report_.message = "stage " + std::to_string(stages_->stage() + 1) + " of " + settings_.integrator + " does not converge: the last of " + std::to_string(report_.iterations) +
+                    " iterations changes velocities by " + number_text(report_.residual) + " of the largest (or of 1 m/s or rad/s), " + number_text(RungeKutta<T>::within) +
+                    " are accepted" + status + "; a smaller step than " + number_text(settings_.step) + " s: the scene turns too far in it, or a motor jumps to its effort and back";
   return report_;
 }
 
 template <class T> const StepReport& Simulation<T>::controlled() {
   using End = typename ErrorControl<T>::End;
   next_ = state_;
-  const End end = (*control_)(T(settings_.step), next_, [this](const State<T>& at, VectorX<T>& out) { return accelerations(at, out); });
+  const End end = (*control_)(T(settings_.step), next_, acceleration_);
   const auto& spent = control_->spent();
   report_.taken = spent.taken, report_.rejected = spent.rejected, report_.error = spent.error;
   if (end == End::reached) (void)end_at(next_);

@@ -49,8 +49,12 @@ template <class T> class Simulation {
   const StepReport& still();
   const StepReport& runge_kutta();
   const StepReport& controlled();
-  bool accelerations(const State<T>& at, VectorX<T>& out);
+  using Stage = typename RungeKutta<T>::Stage;
+  bool accelerations(const State<T>& at, const Stage&, VectorX<T>& out);
+  bool implicit_accelerations(const State<T>& at, const Stage& stage, VectorX<T>& a);
+  bool solve_accelerations(VectorX<T>& out);
   bool end_at(State<T>& next);
+  const StepReport& ended_at_stage();
 
   Settings settings_;
   Plan<T> plan_;
@@ -59,6 +63,8 @@ template <class T> class Simulation {
   Problem<T> problem_;
   std::vector<RowSet<T>> rows_;
   VectorX<T> force_, change_, impulses_;
+  typename RungeKutta<T>::Acceleration acceleration_;  // of methods with stages
+  std::vector<T> armature_;                            // of M, without what is implicit; where stages are
   Moment<T> now_;
   StepReport report_;
   std::unique_ptr<RungeKutta<T>> stages_;

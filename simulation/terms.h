@@ -19,12 +19,14 @@ namespace delassus::simulation {
 /// A step, as its terms see it: numbers at the start of the step.
 template <class T> class Moment {
  public:
-  Moment(const Model& scene_model, const Mechanism<T>& frames, const T& step) : model(&scene_model), mechanism(&frames), h(step), weight(step) {}
+  Moment(const Model& scene_model, const Mechanism<T>& frames, const T& step) : model(&scene_model), mechanism(&frames), h(step), ahead(step), weight(step) {}
 
   const Model* model;
   const Mechanism<T>* mechanism;  ///< its frames at q
-  T h;                            ///< [s]; 0: accelerations are asked for, nothing is implicit
+  T h;                            ///< [s] of what is implicit in M̂; 0: nothing is
+  T ahead;                        ///< [s] springs pull as they would so much later; 0 where accelerations are asked for
   T weight;                       ///< what forces are multiplied with: h, or 1 where accelerations are asked for
+  bool again = false;             ///< the stage of an implicit method that was evaluated last, nearer to its end
   const State<T>* state = nullptr;
   Problem<T>* problem = nullptr;  ///< S and H at q, rows that always hold; inertia terms add to its armature
   VectorX<T>* force = nullptr;    ///< n: force terms add to it [N m or N]

@@ -16,10 +16,11 @@ template <class T> Motors<T>::Motors(const Model& model, const std::vector<Scene
 template <class T> void Motors<T>::add_inertia(Moment<T>& now) {
   const VectorX<T>&q = now.state->q, &nu = now.state->nu;
   for (Motor& m : motors_) {
-    const T missing = m.q < 0 ? T(0) : T(m.target - q[m.q] - now.h * nu[m.dof]);
+    const T missing = m.q < 0 ? T(0) : T(m.target - q[m.q] - now.ahead * nu[m.dof]);
+    const T then = m.now;
     m.now = m.torque + m.stiffness * missing - m.damping * nu[m.dof];
-    if (m.now > m.effort) m.now = m.effort;
-    else if (m.now < -m.effort) m.now = -m.effort;
+    if (m.now > m.effort && !(now.again && then <= -m.effort)) m.now = m.effort;
+    else if (m.now < -m.effort && !(now.again && then >= m.effort)) m.now = -m.effort;
     else now.problem->armature[m.dof] += now.h * (m.damping + now.h * m.stiffness);
   }
 }

@@ -18,7 +18,7 @@ template <class T> void Springs<T>::add_inertia(Moment<T>& now) {
 template <class T> void Springs<T>::add_force(Moment<T>& now) {
   const VectorX<T>&q = now.state->q, &nu = now.state->nu;
   for (const Spring& s : springs_) {
-    const T stretch = s.q < 0 ? T(0) : T(q[s.q] - s.rest + now.h * nu[s.dof]);
+    const T stretch = s.q < 0 ? T(0) : T(q[s.q] - s.rest + now.ahead * nu[s.dof]);
     (*now.force)[s.dof] -= s.stiffness * stretch + s.damping * nu[s.dof];
   }
 }
