@@ -30,10 +30,20 @@ json plan_json(const Scene& scene, const Structure& structure, Matrix matrix) {
           {"steps_without_rows", plan.first_active}};
 }
 
+constexpr double most_described = 256e6;  ///< [B] of one matrix: what is larger takes longer than a description should
+
+/// The sizes of all operators. Those that would be larger say how large they are at least.
 json operators_json(const std::shared_ptr<const Structure>& structure) {
   json out = json::array();
+  const auto square = [](Index n) { return 8 * static_cast<double>(n) * static_cast<double>(n); };
   for (const OperatorRow& row : operators()) {
     json j = {{"name", row.name}, {"bytes", nullptr}, {"workspace_bytes", nullptr}};
+    const double least = row.holds == Holds::sparse ? 0 : square(structure->rows) + (row.holds == Holds::all_squared ? square(structure->dofs()) : 0);
+    if (least > most_described) {
+      j["bytes_at_least"] = least;
+      out.push_back(j);
+      continue;
+    }
     try {
       const auto op = row.make<double>();
       op->analyze(structure);
@@ -207,6 +217,10 @@ void print_text(const json& j, const Model& model, bool joints_too) {
                 e["why"].get<std::string>().c_str());
   std::printf("operators\n");
   for (const json& o : j["operators"]) {
+    if (o.contains("bytes_at_least")) {
+      std::printf("  %-18s at least %s: not held to say how much\n", o["name"].get<std::string>().c_str(), bench::short_bytes(o["bytes_at_least"]).c_str());
+      continue;
+    }
     if (o["bytes"].is_null()) {
       std::printf("  %-18s more memory than this machine has\n", o["name"].get<std::string>().c_str());
       continue;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 
@@ -22,11 +23,21 @@ int fail(const std::string& message, int code) {
   return code;
 }
 
-/// Lets an allocation beyond the machine's memory fail instead of filling it: an explicit operator on a long swimmer
+/// What the machine has left, or what it has where that is not told [B].
+rlim_t memory() {
+  std::ifstream told("/proc/meminfo");
+  for (std::string line; std::getline(told, line);) {
+    unsigned long long kilobytes = 0;
+    if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kilobytes) == 1) return kilobytes << 10;
+  }
+  return static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// Lets an allocation beyond the memory that is left fail instead of filling it: an explicit operator on a long swimmer
 /// asks for terabytes. Not under the address sanitizer, whose own mappings are larger.
 void limit_memory() {
 #if !defined(__SANITIZE_ADDRESS__)
-  const auto bytes = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGE_SIZE));
+  const rlim_t bytes = memory();
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > bytes)) {
     limit.rlim_cur = bytes;

@@ -94,6 +94,8 @@ refused([delassus, "apply", "cassie", "--op", "lcaba", "--rhs", "one"], "'one'",
 refused([delassus, "desribe", "cassie"], "\"desribe\"", "did you mean describe?", "--help")
 refused([delassus, "describe", "casie"], "\"casie\"", "did you mean cassie?")
 refused([delassus, "apply", "cassie", "--op", "aba_sweep", "--solve"], "--op aba_sweep", "has no solve", "lcaba")
+# What would not fit into the machine is said, not tried: describing a long chain once took twenty gigabytes.
+printed([delassus, "describe", "swimmer:20000"], "dense_cholesky     at least 118 GB", "ltl_osim           at least 115 GB", "lcaba                 36")
 misspelt([delassus, "describe", "cassie", "--strickt"], "--strickt", "did you mean --strict?", "--help")
 misspelt([delassus, "apply", "cassie", "--op", "lcaba", "--dampin=1"], "--dampin", "did you mean --damping?", "--help")
 
