@@ -249,7 +249,7 @@ void add_simulate(options::Command& app, Run& run) {
   std::vector<std::string> integrators;
   for (const auto& row : simulation::integrators()) integrators.emplace_back(row.name);
   const options::Option* integrator = c->add_option("--integrator", o->settings.integrator, "euler: semi-implicit, every scene; runge_kutta, dormand_prince: explicit, of orders 4 and 5; implicit_midpoint, sdirk4: implicit, of orders 2 and 4, springs and dampers of any stiffness; all but euler for scenes without rows in cones (see `delassus list integrators`)")->check(options::one_of(integrators))->capture_default_str();
-  c->add_option("--accuracy", o->settings.error, "the steps follow their error: at most this much in a second of them [m, rad, m/s, rad/s]; by dormand_prince, for scenes without rows")->check(options::above(0, ""));
+  c->add_option("--accuracy", o->settings.error, "the steps follow their error: at most this much in a second of them [m, rad, m/s, rad/s]; by dormand_prince, or by sdirk4 where it is named; for scenes without rows in cones")->check(options::above(0, ""));
   c->add_option("--gravity", o->gravity, "acceleration along −z instead of the scene's [m/s²]: a robot's file has none")->check(options::at_least(0, "m/s²"));
   c->add_option("--record", o->record, "FILE.csv or FILE.json: q, ν, energies, rows, residual and drift of every step; FILE.html: a page that plays the run");
   c->add_option("--every", o->every, "record every so many steps (default: 1; 60 a second for a page)")->check(options::whole(1));

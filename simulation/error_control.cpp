@@ -18,6 +18,7 @@ typename ErrorControl<T>::End ErrorControl<T>::operator()(const T& h, State<T>& 
     const bool last = trial >= left;
     const double step = last ? left : std::min(trial, left / 2);  // no last step that is much shorter than the others
     const bool evaluated = method_.attempt(T(step), acceleration);
+    spent_.iterations = method_.iterations(), spent_.left = static_cast<double>(method_.left());
     if (!method_.started()) return End::evaluation_failed;
     const double rate = evaluated ? static_cast<double>(method_.error()) / step : HUGE_VAL, off = rate / tolerance_;
     const double factor = off > 0 ? std::clamp(0.9 / std::pow(off, falls_), 0.2, 5.0) : off == 0 ? 5.0 : 0.2;

@@ -27,7 +27,7 @@ template <class T> void check_rows(const Scene& scene, const Plan<T>& plan, cons
 [[noreturn]] void refuse_error(const Scene& scene, const Settings& settings) {
   if (!(std::isfinite(settings.error) && settings.error > 0))
     throw ModelError(scene.file, "accuracy", number_text(settings.error) + " a second", "a finite number > 0 [m, rad, m/s, rad/s]");
-  throw ModelError(scene.file, "integrator " + settings.integrator, "has steps of one length, and an accuracy is asked of them", "dormand_prince; or a step, without an accuracy");
+  throw ModelError(scene.file, "integrator " + settings.integrator, "has steps of one length, and an accuracy is asked of them", "dormand_prince, or sdirk4 for stiff springs; or a step, without an accuracy");
 }
 
 }  // namespace
@@ -183,6 +183,7 @@ template <class T> const StepReport& Simulation<T>::controlled() {
   const auto& spent = control_->spent();
   report_.taken = spent.taken, report_.rejected = spent.rejected, report_.error = spent.error;
   if (end == End::reached) (void)end_at(next_);
+  report_.iterations = spent.iterations, report_.residual = spent.left;
   if (end != End::too_short) return report_;
   report_.report.status = Status::not_converged;
   report_.message = "an accuracy of " + number_text(settings_.error) + " a second is not reached by steps of " +

@@ -6,7 +6,7 @@
 //                       reversible motions (integrable or nearly so) the energy swings in h² and does not drift. Quadratic
 //                       invariants – the energy and |momentum| of a free top, the energy of masses on springs – are kept to
 //                       what the iteration of the stage leaves. |R(z)| = 1 on the imaginary axis and R(∞) = −1: stiff springs
-//                       neither grow nor vanish
+//                       neither grow nor vanish. Under rows the way back onto them (constrained.h) is not symmetric: energy drifts
 //   sdirk4              order 4, five implicit stages of one γ = 1/4, with an answer of order 3 beside it. Its last stage is its
 //                       end (stiffly accurate) and R(∞) = 0 (L-stable): what is stiff is gone after a step. No stage is an
 //                       evaluation at the start, where a stiff spring that is not at its rest would give accelerations without

@@ -102,7 +102,7 @@ TEST(SimulationAccuracy, KnownErrorsAreReportedAsSuch) {
     return t;
   }));
   ASSERT_TRUE(s.reference.why_not.empty());
-  EXPECT_EQ(s.lines.size(), 6u);  // dormand_prince also under control
+  EXPECT_EQ(s.lines.size(), 7u);  // dormand_prince and sdirk4 also under control
   EXPECT_FALSE(s.has_relaxed);
   for (const SimulatedLine& line : s.lines) {
     ASSERT_EQ(line.cells.size(), line.controlled ? 5u : 4u);

@@ -244,28 +244,33 @@ TEST(Implicit, stiff_springs_and_dampers_to_rounding) {
     }
 }
 
-/// A double pendulum whose lower joint is held by a stiff spring and a damper: that of a locked joint in the limit, with order 4 though
-/// h ω = 10³ … 10⁶.
-TEST(Implicit, a_stiff_joint_is_a_locked_one) {
-  Scene locked = double_pendulum();
-  locked.motion.nu[1] = 0;
-  const Scene free = locked;
+/// A double pendulum whose lower joint is held by a spring and a damper of this frequency, about; locked: by a row.
+Scene held_pendulum(double omega, bool locked = false) {
+  const double inertia = 0.1;  // of the lower body about its joint, about
+  Scene s = double_pendulum();
+  s.motion.nu[1] = 0;
+  if (!locked) {
+    s.motion.springs.push_back({1, 0, inertia * omega * omega, s.q[1], 0.2 * inertia * omega, "scene:1"});
+    return s;
+  }
   Constraint lock;
   lock.name = "lock";
   lock.kind = Constraint::Kind::joint_lock;
   lock.a.body = 1;
-  locked.model.constraints.push_back(lock);
-  locked.damping = Damping<double>::uniform(1, 0);
-  const State<double> exact = run(locked, by("dormand_prince", 1.0 / 800), 800);
+  s.model.constraints.push_back(lock);
+  s.damping = Damping<double>::uniform(1, 0);
+  return s;
+}
+
+/// That of a locked joint in the limit, with order 4 though h ω = 10³ … 10⁶.
+TEST(Implicit, a_stiff_joint_is_a_locked_one) {
+  const State<double> exact = run(held_pendulum(0, true), by("dormand_prince", 1.0 / 800), 800);
   ASSERT_GT(exact.q.size(), 0);
-  const double inertia = 0.1;  // of the lower body about its joint, about
   for (const double h_omega : {1e3, 1e6}) {
     double error[2], speed[2];
     for (const int k : {0, 1}) {
       const int steps = 20 << k;
-      const double omega = h_omega * steps;
-      Scene stiff = free;
-      stiff.motion.springs.push_back({1, 0, inertia * omega * omega, stiff.q[1], 0.2 * inertia * omega, "scene:1"});
+      const Scene stiff = held_pendulum(h_omega * steps);
       const State<double> end = run(stiff, by("sdirk4", 1.0 / steps), steps);
       ASSERT_GT(end.q.size(), 0);
       error[k] = std::abs(end.q[0] - exact.q[0]) + std::abs(end.nu[0] - exact.nu[0]);
@@ -277,6 +282,41 @@ TEST(Implicit, a_stiff_joint_is_a_locked_one) {
     EXPECT_LT(error[1], 1e-4);
     EXPECT_LT(speed[1], 1e-4) << h_omega;
   }
+}
+
+/// Once the spring is where its force is (a few long steps), steps of the pair follow the motion: what they add is what was asked, their number
+/// grows as tolerance^(−1/3), and the explicit pair takes a hundred times as many. Below rounding of the spring's force it is refused.
+TEST(Implicit, steps_of_a_stiff_scene_follow_their_error) {
+  Scene stiff = held_pendulum(1e5), locked = held_pendulum(0, true);  // its deflection is below 1e-8
+  const State<double> settled = run(stiff, by("sdirk4", 0.01), 5);
+  ASSERT_GT(settled.q.size(), 0);
+  stiff.q = locked.q = settled.q, stiff.motion.nu = locked.motion.nu = settled.nu;
+  const State<double> exact = run(locked, by("dormand_prince", 1.0 / 800), 800);
+  const auto taken = [&](const char* integrator, double asked, double t, State<double>& end) {
+    Settings settings = by(integrator, t);
+    settings.error = asked;
+    Simulation<double> s(stiff, settings);
+    const StepReport& r = s.step();
+    EXPECT_TRUE(r.ok()) << r.message;
+    EXPECT_LE(r.error, asked);
+    end = s.state();
+    return r.taken;
+  };
+  int steps[2];
+  for (const int k : {0, 1}) {
+    State<double> end;
+    const double asked = k ? 1e-4 / 27 : 1e-4;
+    steps[k] = taken("sdirk4", asked, 1, end);
+    EXPECT_LT(std::abs(end.q[0] - exact.q[0]) + std::abs(end.nu[0] - exact.nu[0]), 10 * asked);
+  }
+  EXPECT_NEAR(double(steps[1]) / steps[0], 3, 0.6) << steps[0] << " " << steps[1];
+  State<double> end;
+  EXPECT_GT(100 * taken("dormand_prince", 1e-4, 0.01, end), 100 * steps[0]);
+  Settings settings = by("sdirk4", 0.01);
+  settings.error = 1e-16;
+  Simulation<double> below(stiff, settings);
+  EXPECT_EQ(below.step().report.status, Status::not_converged);
+  EXPECT_NE(below.last().message.find("within rounding"), std::string::npos) << below.last().message;
 }
 
 /// A motor stiffer than the inertia it moves, at its effort on the way to its target: between cut and not cut no stage goes in circles.
@@ -373,11 +413,13 @@ TEST(Implicit, midpoint_goes_back_where_it_came_from) {
 // ---- bits, cost, refusals --------------------------------------------------------------------------------------------
 
 TEST(Implicit, a_run_that_goes_on_repeats_every_bit) {
-  for (const char* integrator : {"implicit_midpoint", "sdirk4"})
+  Settings controlled = by("sdirk4", 0.1);
+  controlled.error = 1e-6;
+  for (const Settings& settings : {by("implicit_midpoint", 0.01), by("sdirk4", 0.01), controlled})
     for (const Scene& scene : {smooth_without_rows(), smooth_under_rows(), slider_crank(0.3, 0.8, 0.4, 5)}) {
-      Simulation<double> through(scene, by(integrator, 0.01));
+      Simulation<double> through(scene, settings);
       for (int k = 0; k < 20; ++k) ASSERT_TRUE(through.step().ok());
-      Simulation<double> later(scene, by(integrator, 0.01));
+      Simulation<double> later(scene, settings);
       for (int k = 0; k < 3; ++k) ASSERT_TRUE(later.step().ok());  // what ran before does not matter
       later.restore(through.state());
       for (int k = 0; k < 20; ++k) {
