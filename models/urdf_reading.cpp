@@ -34,11 +34,11 @@ class Listener : public console_bridge::OutputHandler {
   console_bridge::LogLevel level_;
 };
 
-/// The first three of several sentences.
-std::string first_of(const std::vector<std::string>& said) {
+/// All of it: urdfdom stops at the first element that it cannot read.
+std::string joined(const std::vector<std::string>& said) {
   std::string out;
-  for (std::size_t i = 0; i < std::min<std::size_t>(said.size(), 3); ++i) out += (i ? "; " : "") + said[i];
-  return said.size() > 3 ? out + "; and " + std::to_string(said.size() - 3) + " more" : out;
+  for (const std::string& text : said) out += (out.empty() ? "" : "; ") + text;
+  return out;
 }
 
 urdf::ModelInterfaceSharedPtr parse(const CheckedUrdf& checked, Findings& findings) {
@@ -50,7 +50,7 @@ urdf::ModelInterfaceSharedPtr parse(const CheckedUrdf& checked, Findings& findin
     listener.errors.push_back(e.what());
   }
   if (!model || !listener.errors.empty())
-    throw ModelError(checked.file, "robot", "urdfdom: " + (listener.errors.empty() ? "gives no model" : first_of(listener.errors)), "a URDF 1.0 robot; correct what urdfdom names");
+    throw ModelError(checked.file, "robot", "urdfdom: " + (listener.errors.empty() ? "gives no model" : joined(listener.errors)), "a URDF 1.0 robot; correct what urdfdom names");
   for (const std::string& text : listener.warnings) findings.warn("urdfdom", checked.file, "robot", "urdfdom: " + text, "a URDF 1.0 robot");
   for (auto& [name, link] : model->links_) {  // the tree's own pointers would be released by a recursion as deep as the robot
     link->child_links.clear();

@@ -62,7 +62,7 @@ def main():
     archive = subprocess.run(["git", "-C", mutate.ROOT, "archive", "HEAD"], stdout=subprocess.PIPE, check=True).stdout
     # with the time of now: what the last run left built is of its last fault
     subprocess.run(["tar", "-xm", "-C", tree], input=archive, check=True)
-    subprocess.run(["cmake", "--preset", "release", "-DDELASSUS_UNITY=OFF"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--preset", "release", "-DDELASSUS_UNITY=ON"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
     for folder in sorted({name.split("/")[0] for (name, _, _), _ in faults}):
         if by := noticed(tree, folder, options.jobs):
             print("without a fault:", folder, by)

@@ -73,9 +73,9 @@ bool all_hold(const std::vector<Check>& all, Last& last, int seconds) {
   return true;
 }
 
-double cpu_seconds(int who) {
+double cpu_seconds() {
   rusage used{};
-  getrusage(who, &used);
+  getrusage(RUSAGE_SELF, &used);
   return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
@@ -98,18 +98,14 @@ const char* outcome(int status) {
   return WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM ? "time" : "crashed";
 }
 
-int kill_all(int count, std::vector<Check> all, int seconds) {
+void kill_all(int count, std::vector<Check> all, std::size_t short_ones, int seconds) {
   Last& last = *static_cast<Last*>(mmap(nullptr, sizeof(Last), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  const int usual = run_child(0, all, last, seconds);
-  const double unchanged = cpu_seconds(RUSAGE_CHILDREN);
-  std::cout << "0 " << outcome(usual) << ' ' << unchanged << " s, and once " << cpu_seconds(RUSAGE_SELF) << " s" << std::endl;
   for (int mutant = 1; mutant <= count; ++mutant) {
     const int status = run_child(mutant, all, last, seconds);
-    if (last.check < all.size()) std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(last.check), all.begin() + static_cast<std::ptrdiff_t>(last.check) + 1);
+    if (last.check < short_ones) std::rotate(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(last.check), all.begin() + static_cast<std::ptrdiff_t>(last.check) + 1);
     std::replace(std::begin(last.words), std::end(last.words), '\n', ' ');
     std::cout << mutant << ' ' << outcome(status) << ' ' << last.words << std::endl;
   }
-  return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -120,13 +116,22 @@ std::vector<Check> unit_tests(std::string_view begin) {
   return out;
 }
 
-int kill_mutants(int count, const std::vector<Check>& checks, int limit) {
-  Last last{};
-  if (!all_hold(checks, last, limit)) {
-    std::cout << "0 failed " << last.words << std::endl;
-    return EXIT_FAILURE;
+int kill_mutants(int count, std::vector<Check> checks, int limit) {
+  std::vector<std::pair<double, Check>> timed;
+  for (Check& check : checks) {
+    const double before = cpu_seconds();
+    if (const Words words = check(); !words.empty()) {
+      std::cout << "0 failed " << words << std::endl;
+      return EXIT_FAILURE;
+    }
+    timed.emplace_back(cpu_seconds() - before, std::move(check));
   }
-  return kill_all(count, checks, limit);
+  std::cout << "0 survived " << cpu_seconds() << " s" << std::endl;
+  std::stable_sort(timed.begin(), timed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::transform(timed.begin(), timed.end(), checks.begin(), [](auto& one) { return std::move(one.second); });
+  const auto short_ones = std::count_if(timed.begin(), timed.end(), [](const auto& one) { return one.first < 0.1; });
+  kill_all(count, std::move(checks), static_cast<std::size_t>(short_ones), limit);
+  return EXIT_SUCCESS;
 }
 
 }  // namespace delassus::laws

@@ -19,8 +19,8 @@ using Check = std::function<Words()>;
 [[nodiscard]] std::vector<Check> unit_tests(std::string_view begin);
 
 /// Runs the checks unchanged, then on mutants 1 … count, each in a process of its own; for each a line «number outcome
-/// reason». What killed last is tried first. `limit`: seconds of processor time a check may take where a mutant runs.
+/// reason». Cheap checks come first, and of the short ones what killed last. `limit`: seconds of processor time a check may take where a mutant runs.
 /// Exit code 1: the unchanged one does not pass.
-[[nodiscard]] int kill_mutants(int count, const std::vector<Check>& checks, int limit);
+[[nodiscard]] int kill_mutants(int count, std::vector<Check> checks, int limit);
 
 }  // namespace delassus::laws

@@ -52,10 +52,10 @@ def place(text, spans, mutant):
     return None
 
 
-def compose(name, text, mutants):
-    """The file with mutants 1 … len(mutants), each of which `place` has found a body for."""
+def compose(name, text, mutants, first=1):
+    """The file with mutants `first`, `first` + 1, …, each of which `place` has found a body for."""
     spans, cases = bodies(text), {}
-    for number, mutant in enumerate(mutants, 1):
+    for number, mutant in enumerate(mutants, first):
         index, body = place(text, spans, mutant)
         cases.setdefault(index, []).append('case %d: {\n#line 1 "mutant_%d"\n%s\n} break;\n' % (number, number, body))
     for index in sorted(cases, reverse=True):
@@ -64,8 +64,8 @@ def compose(name, text, mutants):
         text = text[:head] + text[head:begin].replace("constexpr", "inline   ") + text[begin:]
         text = '%s\nswitch (delassus_mutant) {\n%sdefault: {\n#line %d "%s"\n%s}}%s' % (
             text[:begin], "".join(cases[index]), line, name, text[begin:end], text[end:])
-    first = re.search(r"^(?!//|#pragma once)", text, flags=re.M).start()
-    return text[:first] + "extern int delassus_mutant;\n" + text[first:]
+    top = re.search(r"^(?!//|#pragma once)", text, flags=re.M).start()
+    return text[:top] + "extern int delassus_mutant;\n" + text[top:]
 
 
 def blamed(output):

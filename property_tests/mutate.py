@@ -48,22 +48,22 @@ FILES = {
     **dict.fromkeys(["weight_root.cpp", "weight_root.h", "mass_root.cpp", "front_plan.cpp", "householder.h", "square_root_factor.cpp",
                      "square_root_solve.cpp"], "Householder SquareRoot WeightRoot MassRoot square_root lcaba_qr")}
 
-# Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them.
+# Sources of the way in, and the suites of unit tests (models_killer.cpp) that hold them; the short ones hold them all.
+SHORT = ("assembly Assembly Bad Field integrate JointLimits kinematics Mesh Mjcf model Names Refusals regularity rows Said SceneFile SceneLaws Scenes SelfContacts "
+         "Standing Tolerances ZeroSize ")
 WAY_IN = {
-    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp", "segments.cpp"], "SelfContacts Standing Segments BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts ZeroSize SceneLaws SceneFile Scenes"),
+    **dict.fromkeys(["box_contacts.cpp", "capsule_box.cpp", "contacts.cpp", "farthest.cpp", "segments.cpp"], "Segments BoxContacts CapsuleBox ContactLaws HullContacts ConvexContacts"),
     "near_pairs.cpp": "NearPairs ContactLaws",
     **dict.fromkeys(["convex_shape.cpp", "convex_axis.cpp", "closest_points.cpp", "rim_axis.cpp", "convex_face.cpp", "convex_contacts.cpp"], "ConvexContacts ContactLaws"),
-    **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"],
-                    "SceneLaws SelfContacts Standing SceneFile Tolerances BadScene Assembly JointLimits Scenes Description Refusals"),
-    **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp",
-                     "inertia_check.cpp", "robot.cpp"], "Description Urdf BadUrdf Field Formats SceneLaws Scenes RobotRefusals Standing"),
+    **dict.fromkeys(["scene.cpp", "scene_contacts.cpp", "scene_constraints.cpp", "scene_robots.cpp", "scene_assembly.cpp", "yaml.cpp"], "Description"),
+    **dict.fromkeys(["parts.cpp", "robot_bodies.cpp", "urdf.cpp", "urdf_check.cpp", "urdf_joints.cpp", "urdf_links.cpp", "urdf_leftover.cpp", "urdf_reading.cpp", "urdf_xml.cpp", "xml_lines.cpp",
+                     "inertia_check.cpp", "robot.cpp"], "Description Urdf Formats RobotRefusals"),
     **dict.fromkeys(["sdf.cpp", "sdf_joints.cpp", "sdf_document.cpp", "sdf_said.cpp", "sdf_text.cpp", "sdf_counts.cpp"], "Sdf Formats RobotRefusals"),
-    "scene_files.cpp": "SceneFile Scenes JointLimits Mjcf",
-    **dict.fromkeys(["mjcf.cpp", "mjcf_shapes.cpp", "mjcf_equalities.cpp", "mjcf_compile.cpp", "mjcf_xml.cpp", "mjcf_said.cpp", "mjcf_newer.cpp"], "Mjcf Formats RobotRefusals"),
-    **dict.fromkeys(["mesh.cpp", "hull.cpp", "facets.cpp"], "Hull Mesh ConvexContacts"), "closest.h": "Names JointLimits Refusals",
-    **dict.fromkeys(["kinematics.cpp", "mechanism.cpp", "mechanism_rows.cpp"], "kinematics moving integrate rows SceneLaws Description"), "constraints.cpp": "rows closure moving model SceneLaws",
-    **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "Assembly closure assembly SceneFile Scenes"),
-    "model.cpp": "model Tolerances regularity kinematics", "regularity.cpp": "regularity model"}
+    **dict.fromkeys(["mjcf.cpp", "mjcf_shapes.cpp", "mjcf_equalities.cpp", "mjcf_compile.cpp", "mjcf_xml.cpp", "mjcf_said.cpp", "mjcf_newer.cpp"], "Formats RobotRefusals"),
+    **dict.fromkeys(["mesh.cpp", "hull.cpp", "facets.cpp"], "Hull ConvexContacts"), "closest.h": "", "scene_files.cpp": "",
+    **dict.fromkeys(["kinematics.cpp", "mechanism.cpp", "mechanism_rows.cpp"], "moving Description"), "constraints.cpp": "closure moving",
+    **dict.fromkeys(["loop_closing.cpp", "loop_newton.cpp", "closure_error.cpp"], "closure"), "model.cpp": "", "regularity.cpp": ""}
+WAY_IN = {name: SHORT + suites for name, suites in WAY_IN.items()}
 FILES.update(WAY_IN)
 for source in sorted(os.listdir(os.path.join(ROOT, "algorithms", "operators"))):  # the rest: a file is called as the operator it is
     if source.endswith(".cpp") and source not in ("operators.cpp", "kernel_costs.cpp"):
@@ -159,6 +159,9 @@ class Copy:
         subprocess.run(["tar", "-x", "-C", fresh], input=archive, check=True)
         for name in ("mutant_killer.cpp", "models_killer.cpp", "killing.cpp", "killing.h"):
             shutil.copy(os.path.join(HERE, name), os.path.join(fresh, "property_tests"))
+        if self.way_in:
+            with open(os.path.join(fresh, "CMakeLists.txt"), "a", encoding="utf-8") as f:
+                f.write("set_target_properties(delassus_models PROPERTIES UNITY_BUILD OFF)\n")
         for name in self.way_in:  # what is not mutated comes from the compiler's cache
             part, _, room = folder_of(name).partition("/")
             with open(os.path.join(fresh, part, "CMakeLists.txt"), "a", encoding="utf-8") as f:
@@ -196,7 +199,7 @@ class Copy:
 
     def configure(self):
         if self.way_in:
-            subprocess.run(["cmake", "--preset", "release", "-DDELASSUS_UNITY=OFF"], check=True, stdout=subprocess.DEVNULL, cwd=self.tree)
+            subprocess.run(["cmake", "--preset", "release", "-DDELASSUS_UNITY=ON"], check=True, stdout=subprocess.DEVNULL, cwd=self.tree)
         elif not os.path.exists(os.path.join(self.build, "build.ninja")):
             subprocess.run(["cmake", "-S", self.tree, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCCACHE=OFF", "-DDELASSUS_UNITY=OFF",
                             "-DCMAKE_CXX_FLAGS=-O2 -march=native -w",
@@ -210,40 +213,51 @@ class Copy:
         open(os.path.join(self.tree, folder_of(name), name), "w", encoding="utf-8").write(text)
 
     def make(self, name):
-        return subprocess.run(["ninja", "-j1", "-C", self.build, killer_of(name)], stdout=subprocess.PIPE,
+        return subprocess.run(["ninja", "-j1", "-k0", "-C", self.build, killer_of(name)], stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, errors="replace")
 
-    def kill(self, name, count=0):
-        """[(outcome, what the killer said)] of the program unchanged, then of its mutants 1 … count."""
+    def kill(self, name, count):
+        """[(outcome, what the killer said)] of mutants 1 … count; ends where the program unchanged does not pass."""
         def limits():
             resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         program = os.path.join(self.build, "property_tests", killer_of(name))
-        done = subprocess.run([program, "--mutants", str(count)] + FILES[name].split(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                              text=True, errors="replace", preexec_fn=limits, cwd=self.tree)
-        lines = (re.match(r"\d+ (survived|failed|crashed|time) (.*)", line) for line in done.stdout.split("\n"))  # tests print, too
-        said = [line.groups() for line in lines if line]
-        if count and len(said) != count + 1:
-            raise RuntimeError("the killer ended with %d: %s" % (done.returncode, done.stdout[-500:]))
-        return said[1:] if count else said
+        with subprocess.Popen([program, "--mutants", str(count)] + FILES[name].split(), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              text=True, errors="replace", preexec_fn=limits, cwd=self.tree) as killer:
+            said = []
+            for line in killer.stdout:  # tests print, too
+                if found := re.match(r"(\d+) (survived|failed|crashed|time) (.*)", line):
+                    said.append(found.groups()[1:])
+                    if found.group(2) == "survived":
+                        print("%s of %d: survived %s" % (found.group(1), count, found.group(3)), flush=True)
+        if said and said[0][0] != "survived":
+            print("the unchanged tree does not pass:", name, *said[0])
+            sys.exit(2)
+        if len(said) != count + 1:
+            raise RuntimeError("the killer ended with %d after %d of %d" % (killer.returncode, len(said) - 1, count))
+        return said[1:]
 
 
-def judge(copy, name, text, group):
-    """Outcomes of mutants of one file, all in one program."""
+def judge(copy, texts, group):
+    """Outcomes of mutants of files that the same suites hold, all in one program."""
     if not group:
         return
-    copy.write(name, mutant_batch.compose(name, text, group))
-    made = copy.make(name)
+    for name in dict.fromkeys(m["file"] for m in group):
+        numbers = [k for k, m in enumerate(group) if m["file"] == name]
+        copy.write(name, mutant_batch.compose(name, texts[name], group[numbers[0]:numbers[-1] + 1], numbers[0] + 1))
+    made = copy.make(group[0]["file"])
     if made.returncode == 0:
-        for mutant, (outcome, by) in zip(group, copy.kill(name, len(group))):
+        for mutant, (outcome, by) in zip(group, copy.kill(group[0]["file"], len(group))):
             mutant["outcome"], mutant["by"] = outcome, by
         return
+    for m in group:
+        copy.write(m["file"], texts[m["file"]])
     guilty = mutant_batch.blamed(made.stdout) if len(group) > 1 else {1}
     for number in guilty:
         group[number - 1]["outcome"] = "compiler"
     rest = [m for number, m in enumerate(group, 1) if number not in guilty]
     for part in [rest] if guilty else [rest[::2], rest[1::2]]:
-        judge(copy, name, text, part)
+        judge(copy, texts, part)
 
 
 def summary(done, equivalent):
@@ -268,16 +282,16 @@ def summary(done, equivalent):
 
 
 def chosen(options, texts):
-    every = []
     if options.faults:
         return read_faults(options.faults, texts)
+    out = []
     for name in options.files:
         spans = mutant_batch.bodies(texts[name])
-        every += [m for m in mutants(name, texts[name]) if mutant_batch.place(texts[name], spans, m)]
-    if options.sample:
-        every = sorted(random.Random(options.seed).sample(every, min(options.sample, len(every))),
-                       key=lambda m: (list(FILES).index(m["file"]), m["line"]))
-    return every
+        every = [m for m in mutants(name, texts[name]) if mutant_batch.place(texts[name], spans, m)]
+        if 0 < options.sample < len(every):  # of a file alone: what else is run does not change it
+            every = sorted(random.Random("%d %s" % (options.seed, name)).sample(every, options.sample), key=lambda m: m["line"])
+        out += every
+    return out
 
 
 def numbered(some):
@@ -316,28 +330,24 @@ def run(options, equivalent):
     before = judged_before(options, todo, equivalent)
     done, todo = list(before.values()), [m for key, m in numbered(todo) if key not in before]
     copy.configure()
-    for name in options.files:
-        of_file = [m for m in todo if m["file"] == name]
-        if not of_file:
-            continue
-        made = copy.make(name)
-        unchanged = copy.kill(name) if made.returncode == 0 else [("compiler", made.stdout[-2000:])]
-        if unchanged[0][0] != "survived":
-            print("the unchanged tree does not pass:", name, *unchanged[0])
-            return 2
-        print(name, "unchanged:", unchanged[0][1], flush=True)
-        for group in [of_file[k:k + options.batch] for k in range(0, len(of_file), options.batch)]:
+    made = copy.make(options.files[0])
+    if made.returncode:
+        print("the unchanged tree does not compile:", made.stdout[-2000:])
+        return 2
+    for suites in dict.fromkeys(FILES[name] for name in options.files):
+        together = [m for m in todo if FILES[m["file"]] == suites]
+        for group in [together[k:k + options.batch] for k in range(0, len(together), options.batch)]:
             start = time.time()
-            judge(copy, name, texts[name], group)
+            judge(copy, texts, group)
             for m in group:
                 del m["text"]
+                copy.write(m["file"], texts[m["file"]])
             done += group
             if options.json:
                 json.dump(done, open(options.json, "w"), indent=1, ensure_ascii=False)
             count = lambda *outcomes: sum(m["outcome"] in outcomes for m in group)
-            print("%s:%d-%d %d mutants, %d not compiled, %d survived, %d by time, %.0f s" % (name, group[0]["line"], group[-1]["line"],
-                  len(group), count("compiler"), count("survived"), count("time"), time.time() - start), flush=True)
-        copy.write(name, texts[name])
+            print("%s:%d to %s:%d, %d mutants, %d not compiled, %d survived, %d by time, %.0f s" % (group[0]["file"], group[0]["line"], group[-1]["file"],
+                  group[-1]["line"], len(group), count("compiler"), count("survived"), count("time"), time.time() - start), flush=True)
     return 1 if (fault_table(done) if options.faults else summary(done, equivalent)) else 0
 
 
@@ -346,7 +356,7 @@ def main():
     p.add_argument("--work", help="folder for the copy and its build")
     p.add_argument("--commit", default="HEAD", help="whose sources are mutated (HEAD)")
     p.add_argument("--files", nargs="+", default=[f for f in FILES if os.path.exists(os.path.join(ROOT, folder_of(f), f))], choices=list(FILES), metavar="FILE")
-    p.add_argument("--sample", type=int, default=0, help="that many, drawn at random; 0: all")
+    p.add_argument("--sample", type=int, default=0, help="that many of each file, drawn at random; 0: all")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--batch", type=int, default=40, help="mutants in one program")
     p.add_argument("--json", help="all outcomes, rewritten after every batch")
