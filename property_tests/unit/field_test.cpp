@@ -272,6 +272,9 @@ TEST(Field, a_robot_file_is_a_scene) {
   EXPECT_EQ(free.model.dofs(), 7);
   ASSERT_EQ(free.robots.size(), 1u);
   EXPECT_EQ(free.robots[0].name, "arm");
+  std::ofstream(test::temporary("arm.urdf")) << "<robot name=\"r\">\n" << link("world", "") << base << b << joint("w", "fixed", "world", "base", "") << turning() << "</robot>";
+  EXPECT_EQ(open_scene(file).model.dofs(), 1);  // no base is asked for
+  std::ofstream(test::temporary("arm.urdf")) << "<robot name=\"r\">\n" << base << b << turning() << "</robot>";
   const Scene fixed = open_scene(file, {.strict = true, .base = RobotOptions::Base::fixed, .armature = 0.125});
   EXPECT_EQ(mass_matrix(fixed), mass_matrix(scene_of(base + b + turning(), ", base: fixed, armature: 0.125")));
   EXPECT_THROW((void)open_scene("go2_standing", {.strict = false, .base = RobotOptions::Base::fixed, .armature = {}}), ModelError);

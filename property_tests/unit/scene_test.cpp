@@ -132,6 +132,32 @@ Scene scene_of(const std::string& text) {
 const std::string two_boxes =
     "boxes:\n  - {name: a, mass: 1, size: [1, 1, 1]}\n  - {name: b, mass: 2, size: [1, 1, 1], pose: {xyz: [3, 0, 0]}}\n";
 
+TEST(SceneFile, every_key_at_the_top_lands_in_its_own_field) {
+  const Scene none = scene_of(two_boxes), all = scene_of(two_boxes + "note: two boxes\npose: provisional\ngravity: [1, -2, 3]\nground: {z: -4, friction: 0.5}\nsleeping: {linear: 0.25, angular: 0.5, after: 2}\n");
+  EXPECT_EQ(none.note, "");
+  EXPECT_EQ(all.note, "two boxes");
+  EXPECT_FALSE(none.provisional_pose);
+  EXPECT_TRUE(all.provisional_pose);
+  EXPECT_FALSE(scene_of(two_boxes + "pose: recorded\n").provisional_pose);
+  EXPECT_FALSE(none.has_gravity);
+  EXPECT_TRUE(all.has_gravity);
+  EXPECT_EQ(all.gravity, Vector3<double>(1, -2, 3));
+  EXPECT_FALSE(none.has_ground);
+  EXPECT_TRUE(all.has_ground);
+  EXPECT_EQ(all.ground_height, -4);
+  EXPECT_EQ(all.ground_friction, 0.5);
+  EXPECT_EQ(all.motion.sleeping.linear, 0.25);
+  EXPECT_EQ(all.motion.sleeping.angular, 0.5);
+  EXPECT_EQ(all.motion.sleeping.after, 2);
+}
+
+// A scene that gives no velocity has none, not velocities that are zero; a body behind those with one rests.
+TEST(SceneFile, velocities_are_there_where_one_is_given) {
+  EXPECT_EQ(scene_of(two_boxes).motion.nu.size(), 0);
+  const Scene s = scene_of("boxes:\n  - {name: a, mass: 1, size: [1, 1, 1], velocity: {linear: [1, 2, 3]}}\n  - {name: b, mass: 1, size: [1, 1, 1], pose: {xyz: [3, 0, 0]}}\n");
+  EXPECT_EQ(s.motion.nu, (VectorX<double>(12) << 0, 0, 0, 1, 2, 3, 0, 0, 0, 0, 0, 0).finished());
+}
+
 TEST(SceneFile, an_open_end_is_where_the_first_one_is) {
   const Scene s = scene_of(two_boxes + "constraints:\n  - {kind: weld, of: a, at: [0.5, 0, 0], to: world}\n  - {kind: distance, of: a, to: b, to_at: [0, 0, 0]}\n");
   EXPECT_EQ(s.model.constraints[0].b.placement.translation, Vector3<double>(0.5, 0, 0));
