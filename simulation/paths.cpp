@@ -64,8 +64,20 @@ template <class T> StepReport EquationsPath<T>::velocities(Moment<T>& now, Vecto
   out.report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{accuracy_}, work_);
   change = motion_.col(0);
   impulses = rows_.col(0);
+  if (out.report.status == Status::not_converged && is_rounding(out.report, change)) out.report.status = Status::ok;
   if (out.report.ok() && !finite(change)) out.report.status = Status::not_finite;
   return out;
+}
+
+// At rest forces cancel, and no digit of what is left can be had: a change with an error that is less, in the energy norm, than what M̂⁻¹ h f rounds.
+template <class T> bool EquationsPath<T>::is_rounding(const Report& report, const VectorX<T>& change) {
+  using std::sqrt;
+  if (!(report.error_estimate >= 0)) return false;
+  nu_.col(0) = change;
+  tree_.M(nu_, motion_);
+  const T size = sqrt(change.dot(motion_.col(0)));
+  if (!tree_.M_inverse(push_, motion_).ok()) return false;
+  return size + T(report.error_estimate) * size <= T(8 * unit_roundoff<T>) * sqrt(push_.col(0).dot(motion_.col(0)));
 }
 
 template <class T> Report EquationsPath<T>::correct(const VectorX<T>& gap, VectorX<T>& d) {

@@ -78,6 +78,7 @@ template <class T> class EquationsPath final : public Path<T> {
   Report correct(const VectorX<T>& gap, VectorX<T>& d);
 
  private:
+  bool is_rounding(const Report& report, const VectorX<T>& change);
   std::unique_ptr<Operator<T>> operator_;
   Damping<T> damping_;
   Report taken_;
