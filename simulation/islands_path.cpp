@@ -136,14 +136,16 @@ template <class T> StepReport IslandsPath<T>::move(Mover& m, Moment<T>& now, Vec
   return out;
 }
 
+template <class T> StepReport IslandsPath<T>::move_whole(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
+  moved_ = 1;
+  StepReport out = moving_[0]->path->velocities(now, change, impulses);
+  if (!moving_[0]->loops.empty() && out.ok()) hand_over(*moving_[0], now);
+  return out;
+}
+
 template <class T> StepReport IslandsPath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
   if (!whole_ || islands_.trees() > 1 || now.resting != nullptr) deal(now);  // else one tree, one island
-  if (whole_) {
-    moved_ = 1;
-    const StepReport out = moving_[0]->path->velocities(now, change, impulses);
-    if (!moving_[0]->loops.empty() && out.ok()) hand_over(*moving_[0], now);
-    return out;
-  }
+  if (whole_) return move_whole(now, change, impulses);
   Index rows = structure_->rows;
   for (const RowSet<T>& s : *now.rows) rows += s.directions;
   change = VectorX<T>::Constant(structure_->dofs(), T(0));

@@ -61,6 +61,7 @@ template <class T> class IslandsPath final : public Path<T> {
   static void hand_over(Mover& m, const Moment<T>& now);
   Mover& mover_of(const std::vector<Index>& trees, const Moment<T>& now);
   StepReport move(Mover& m, Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses);
+  StepReport move_whole(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses);
 
   std::string_view name_;
   std::shared_ptr<const Structure> structure_;
