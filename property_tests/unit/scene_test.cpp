@@ -158,6 +158,32 @@ TEST(SceneFile, velocities_are_there_where_one_is_given) {
   EXPECT_EQ(s.motion.nu, (VectorX<double>(12) << 0, 0, 0, 1, 2, 3, 0, 0, 0, 0, 0, 0).finished());
 }
 
+// The base of a robot that floats starts with its velocity, and the joints with theirs.
+TEST(SceneFile, velocities_of_a_robot_are_read) {
+  const auto file = delassus::test::temporary("delassus_scene_test_robot.urdf");
+  std::ofstream(file) << "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+                         "<link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+                         "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+  const Scene s = scene_of("robots:\n  - {name: r, urdf: " + file.string() + ", base: free, velocity: {angular: [1, 2, 3], linear: [4, 5, 6]}, velocities: {j: 7}}\n");
+  EXPECT_EQ(s.motion.nu, (VectorX<double>(7) << 1, 2, 3, 4, 5, 6, 7).finished());
+}
+
+// R⁻¹ of contacts alone; of everything, where it is one number.
+TEST(SceneFile, damping_of_contacts_is_read) {
+  const std::string detect = two_boxes + "ground: {z: 0}\n";
+  EXPECT_EQ(scene_of(detect + "contacts: {detect: true}\n").motion.contact_damping, 0);
+  EXPECT_EQ(scene_of(detect + "contacts: {detect: true, damping: 0.25}\n").motion.contact_damping, 0.25);
+  EXPECT_EQ(scene_of(detect + "damping: 0.5\ncontacts: {detect: true, damping: 0.25}\n").motion.contact_damping, 0.25);
+  EXPECT_EQ(scene_of(detect + "damping: 0.5\ncontacts: {detect: true}\n").motion.contact_damping, 0.5);
+}
+
+TEST(SceneFile, general_constraints_are_called_by_their_number) {
+  const std::string general = "  - {kind: general, terms: [{of: a, K: [[1, 0, 0, 0, 0, 0]]}]}\n";
+  const Scene s = scene_of(two_boxes + "constraints:\n" + general + general);
+  EXPECT_EQ(s.model.constraints[0].name, "general 0");
+  EXPECT_EQ(s.model.constraints[1].name, "general 1");
+}
+
 TEST(SceneFile, an_open_end_is_where_the_first_one_is) {
   const Scene s = scene_of(two_boxes + "constraints:\n  - {kind: weld, of: a, at: [0.5, 0, 0], to: world}\n  - {kind: distance, of: a, to: b, to_at: [0, 0, 0]}\n");
   EXPECT_EQ(s.model.constraints[0].b.placement.translation, Vector3<double>(0.5, 0, 0));
