@@ -4,11 +4,21 @@
 #include <functional>
 #include <map>
 
+#include "algorithms/kit/counted.h"
 #include "property_tests/unit/stepping_scenes.h"
 #include "simulation/effects/gravity.h"
 #include "simulation/effects/springs.h"
 
 namespace delassus::stepping {
+
+/// Of so many steps; −1 where one fails.
+inline std::int64_t operations(const Scene& scene, const Settings& settings, int steps) {
+  Simulation<Counted> s(scene, settings);
+  operation_count = {};
+  for (int k = 0; k < steps; ++k)
+    if (!s.step().ok()) return -1;
+  return operation_count.total();
+}
 
 /// The scene as if the key of an effect had never been written.
 inline void never_written(const std::string& effect, Scene& s) {

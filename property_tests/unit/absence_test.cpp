@@ -1,7 +1,6 @@
 // What a scene does not call for has no bit, no operation, no byte in the run: the proofs, for every effect of the table.
 #include <gtest/gtest.h>
 
-#include "algorithms/kit/counted.h"
 #include "property_tests/unit/absence.h"
 
 namespace delassus::absence_test {
@@ -13,14 +12,6 @@ template <class T> const PlanLine& line_of(const StepPlan<T>& plan, const std::s
   for (const PlanLine& line : plan.lines)
     if (line.effect->name == effect) return line;
   throw std::logic_error("no line of " + effect);
-}
-
-std::int64_t operations(const Scene& scene, const Settings& settings, int steps) {
-  Simulation<Counted> s(scene, settings);
-  operation_count = {};
-  for (int k = 0; k < steps; ++k)
-    if (!s.step().ok()) return -1;
-  return operation_count.total();
 }
 
 bool same_bits(const State<double>& a, const State<double>& b) { return a.q.size() > 0 && a.q == b.q && a.nu == b.nu; }

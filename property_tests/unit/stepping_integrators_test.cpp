@@ -109,20 +109,12 @@ TEST(Integrators, controlled_steps_repeat_every_bit) {
 }
 
 TEST(Integrators, an_accuracy_is_refused_by_name) {
-  const auto says = [](const Scene& scene, const Settings& settings, const std::string& words) {
-    try {
-      Simulation<double> s(scene, settings);
-      ADD_FAILURE() << "accepted";
-    } catch (const ModelError& e) {
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
-    }
-  };
   Settings euler = step_of(1e-3);
   euler.error = 1e-6;
-  says(pendulum(1), euler, "steps of one length");
-  says(pendulum(1), controlled(1e-3, -1), "finite number > 0");
-  says(pendulum(1), controlled(1e-3, std::nan("")), "finite number > 0");
-  says(thrown_box(), controlled(1e-3, 1e-6), "contacts, contact friction");
+  refused(pendulum(1), euler, "steps of one length");
+  refused(pendulum(1), controlled(1e-3, -1), "finite number > 0");
+  refused(pendulum(1), controlled(1e-3, std::nan("")), "finite number > 0");
+  refused(thrown_box(), controlled(1e-3, 1e-6), "contacts, contact friction");
   Simulation<double> within_rounding(double_pendulum(), controlled(1, 1e-30));
   const StepReport& r = within_rounding.step();
   EXPECT_EQ(r.report.status, Status::not_converged);

@@ -56,6 +56,16 @@ inline Settings step_of(double h) {
   return s;
 }
 
+/// No simulation is made of it, and the words say why.
+inline void refused(const Scene& scene, const Settings& settings, const std::string& words) {
+  try {
+    Simulation<double> s(scene, settings);
+    ADD_FAILURE() << "accepted";
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+  }
+}
+
 /// The state after `steps`; a step that fails is an empty state.
 template <class T = double> State<T> run(const Scene& scene, const Settings& settings, int steps) {
   Simulation<T> s(scene, settings);

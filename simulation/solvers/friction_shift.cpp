@@ -22,8 +22,8 @@ template <class T> void FrictionShift<T>::plain(const ContactProblem<T>& p, cons
   }
 }
 
-// v − Φ' v
-template <class T> void FrictionShift<T>::derivative(const ContactProblem<T>& p, PrimalNewton<T>& point, const T* v, T* out) {
+// (1 − Φ') v
+template <class T> void FrictionShift<T>::multiply(const ContactProblem<T>& p, PrimalNewton<T>& point, const T* v, T* out) {
   moved_.setZero();
   for (std::size_t e = 0; e < p.groups.size(); ++e) moved_[p.groups[e].row] = slope_[p.groups[e].row] != T(0) ? v[e] : T(0);
   point.multiply_hessian(moved_, turned_);
@@ -65,7 +65,7 @@ Report FrictionShift<T>::newton(const ContactProblem<T>& p, PrimalNewton<T>& poi
   rest[0] = start;
   for (; k < small_.cols() - 1 && abs(rest[k]) > T(1e-3) * start; ++k) {
     auto next = basis_.col(k + 1);
-    derivative(p, point, basis_.col(k).data(), next.data());
+    multiply(p, point, basis_.col(k).data(), next.data());
     for (Index j = 0; j <= k; ++j) {
       small_(j, k) = next.dot(basis_.col(j));
       next -= small_(j, k) * basis_.col(j);

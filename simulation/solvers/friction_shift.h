@@ -26,7 +26,7 @@ template <class T> class FrictionShift {
   [[nodiscard]] const T& operator[](std::size_t group) const { return gamma_[static_cast<Index>(group)]; }
 
  private:
-  void derivative(const ContactProblem<T>& p, PrimalNewton<T>& point, const T* v, T* out);
+  void multiply(const ContactProblem<T>& p, PrimalNewton<T>& point, const T* v, T* out);
   VectorX<T> gamma_, left_;          // per group: Γ, Φ(Γ) − Γ
   VectorX<T> slope_, turned_, moved_, pushed_;  // per row: t, H e_n v, J d, dλ
   MatrixX<T> basis_, small_;         // Krylov's space; the triangle, with its right-hand side as the last column

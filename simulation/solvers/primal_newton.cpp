@@ -128,9 +128,13 @@ template <class T> void PrimalNewton<T>::evaluate(const VectorX<T>& R_inverse, c
   curve(R_inverse, u, lambda);
 }
 
-template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd) {
+template <class T> Report PrimalNewton<T>::factor_hessian() {
   weights_.assign(H_);  // it holds what it is given: here H itself
-  const Report report = factor_.update_weights(weights_);
+  return factor_.update_weights(weights_);
+}
+
+template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, VectorX<T>& d, VectorX<T>& Jd) {
+  const Report report = factor_hessian();
   if (!report.ok()) return report;
   tau_ = -Mw_;
   gained_ = lambda - origin_;
@@ -140,8 +144,7 @@ template <class T> Report PrimalNewton<T>::direction(const VectorX<T>& lambda, V
 
 template <class T> Report PrimalNewton<T>::linearise(const VectorX<T>& R_inverse, const VectorX<T>& lambda) {
   curve(R_inverse, u_, lambda);
-  weights_.assign(H_);
-  return factor_.update_weights(weights_);
+  return factor_hessian();
 }
 
 template <class T> void PrimalNewton<T>::respond(const VectorX<T>& x, VectorX<T>& Jd) {

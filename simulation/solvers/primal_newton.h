@@ -68,6 +68,7 @@ template <class T> class PrimalNewton {
   void take(const VectorX<T>& R_inverse);
   void impulses(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);
   void curve(const VectorX<T>& R_inverse, const VectorX<T>& u, const VectorX<T>& lambda);
+  Report factor_hessian();
   T length(const VectorX<T>& R_inverse);
   bool is_expected(const VectorX<T>& R_inverse, const VectorX<T>& b, const VectorX<T>& lambda, double velocity) const;
   const ContactProblem<T>* problem_ = nullptr;
