@@ -4,7 +4,7 @@
 #include "algorithms/delassus.h"
 #include "algorithms/mechanism/model.h"
 #include "bench/results.h"
-#include "bench/uses.h"
+#include "bench/table1/uses.h"
 
 namespace delassus::bench {
 

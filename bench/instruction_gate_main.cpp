@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bench/cache_lines.h"
+#include "bench/table1/cache_lines.h"
 #include "bench/instruction_gate.h"
 
 int main(int argc, char** argv) {

@@ -5,7 +5,7 @@
 
 #include "bench/interleaved.h"
 #include "bench/text.h"
-#include "bench/uses.h"
+#include "bench/table1/uses.h"
 
 namespace delassus::bench {
 

@@ -5,15 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/accuracy_campaign.h"
-#include "bench/accuracy_digest.h"
-#include "bench/ladder.h"
+#include "bench/accuracy/accuracy_campaign.h"
+#include "bench/accuracy/accuracy_digest.h"
+#include "bench/scaling/ladder.h"
 #include "bench/machine.h"
-#include "bench/page.h"
-#include "bench/scene_facts.h"
+#include "bench/page/page.h"
+#include "bench/page/scene_facts.h"
 #include "bench/text.h"
 #include "bench/verify.h"
-#include "property_tests/laws.h"
+#include "property_tests/laws/laws.h"
 #include "reference/reference.h"
 
 namespace delassus::bench {

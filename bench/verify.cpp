@@ -6,9 +6,9 @@
 #include <numeric>
 #include <thread>
 
-#include "bench/accuracy.h"
+#include "bench/accuracy/accuracy.h"
 #include "bench/text.h"
-#include "property_tests/laws.h"
+#include "property_tests/laws/laws.h"
 
 namespace delassus::bench {
 

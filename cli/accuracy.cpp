@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "algorithms/errors/message.h"
-#include "bench/accuracy_campaign.h"
-#include "bench/accuracy_digest.h"
-#include "bench/plot.h"
+#include "bench/accuracy/accuracy_campaign.h"
+#include "bench/accuracy/accuracy_digest.h"
+#include "bench/page/plot.h"
 #include "bench/text.h"
 #include "cli/accuracy_simulation.h"
 #include "cli/accuracy_steps.h"
@@ -16,7 +16,7 @@
 #include "cli/common.h"
 #include "cli/interrupt.h"
 #include "generators/families.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

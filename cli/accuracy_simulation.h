@@ -1,9 +1,9 @@
 // `delassus accuracy --simulate`: what accuracy costs in a whole simulation.
 #pragma once
 
-#include "bench/accuracy_simulation.h"
+#include "bench/accuracy/accuracy_simulation.h"
 #include "cli/common.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

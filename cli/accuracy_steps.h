@@ -1,7 +1,7 @@
-// `delassus accuracy --steps`: what a convergence (bench/accuracy_steps.h) looks like as text and as JSON.
+// `delassus accuracy --steps`: what a convergence (bench/accuracy/accuracy_steps.h) looks like as text and as JSON.
 #pragma once
 
-#include "bench/accuracy_steps.h"
+#include "bench/accuracy/accuracy_steps.h"
 #include "cli/common.h"
 
 namespace delassus::cli {

@@ -1,13 +1,13 @@
 // `delassus apply SCENE --op NAME [--solve]`: one operator on one vector.
 #include <cstdio>
 
-#include "bench/accuracy.h"
+#include "bench/accuracy/accuracy.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/gravity.h"
 #include "cli/names.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

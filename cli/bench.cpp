@@ -4,12 +4,12 @@
 
 #include "bench/cell.h"
 #include "bench/machine.h"
-#include "bench/scene_facts.h"
+#include "bench/page/scene_facts.h"
 #include "bench/text.h"
 #include "cli/bench_results.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

@@ -7,8 +7,8 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/interrupt.h"
-#include "property_tests/defects.h"
-#include "property_tests/options.h"
+#include "property_tests/defects/defects.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

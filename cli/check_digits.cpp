@@ -6,14 +6,14 @@
 #include <numeric>
 
 #include "algorithms/errors/message.h"
-#include "bench/digits_picture.h"
-#include "bench/plot.h"
+#include "bench/page/digits_picture.h"
+#include "bench/page/plot.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "generators/random.h"
-#include "property_tests/digits.h"
-#include "property_tests/laws.h"
+#include "property_tests/laws/digits.h"
+#include "property_tests/laws/laws.h"
 
 namespace delassus::cli {
 

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "algorithms/errors/message.h"
-#include "property_tests/defects.h"
-#include "property_tests/options.h"
+#include "property_tests/defects/defects.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

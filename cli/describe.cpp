@@ -5,14 +5,14 @@
 
 #include "algorithms/dynamics/spectrum.h"
 #include "algorithms/factors/plan.h"
-#include "bench/scene_facts.h"
+#include "bench/page/scene_facts.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/describe_robot.h"
 #include "cli/effects.h"
 #include "cli/names.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/names.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

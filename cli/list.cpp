@@ -1,7 +1,7 @@
 // `delassus list`: the tables, as they are compiled in.
 #include <cstdio>
 
-#include "bench/scene_facts.h"
+#include "bench/page/scene_facts.h"
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -9,9 +9,9 @@
 #include "cli/effects.h"
 #include "cli/solvers.h"
 #include "generators/families.h"
-#include "property_tests/defects.h"
+#include "property_tests/defects/defects.h"
 #include "reference/reference.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

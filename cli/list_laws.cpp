@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "bench/text.h"
-#include "property_tests/law_tables.h"
+#include "property_tests/laws/law_tables.h"
 
 namespace delassus::cli {
 

@@ -13,8 +13,8 @@
 #include "algorithms/errors/message.h"
 #include "algorithms/errors/status.h"
 #include "cli/commands.h"
-#include "property_tests/allocations.h"
-#include "property_tests/options.h"
+#include "property_tests/unit/allocations.h"
+#include "cli/program/options.h"
 
 namespace {
 

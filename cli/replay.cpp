@@ -5,7 +5,7 @@
 #include "bench/text.h"
 #include "cli/commands.h"
 #include "cli/stress_json.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

@@ -7,14 +7,14 @@
 #include <fstream>
 
 #include "algorithms/errors/message.h"
-#include "bench/plot.h"
+#include "bench/page/plot.h"
 #include "bench/text.h"
 #include "cli/capture.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/simulate_explain.h"
 #include "cli/simulate_page.h"
-#include "property_tests/options.h"
+#include "cli/program/options.h"
 #include "simulation/observe.h"
 #include "simulation/step.h"
 

@@ -10,8 +10,8 @@
 #include "cli/interrupt.h"
 #include "cli/stress_json.h"
 #include "generators/classes.h"
-#include "property_tests/defects.h"
-#include "property_tests/options.h"
+#include "property_tests/defects/defects.h"
+#include "cli/program/options.h"
 
 namespace delassus::cli {
 

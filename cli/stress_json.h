@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/common.h"
-#include "property_tests/search.h"
+#include "property_tests/laws/search.h"
 
 namespace delassus::cli {
 

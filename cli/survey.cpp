@@ -10,9 +10,9 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/survey_file.h"
-#include "property_tests/isolated.h"
-#include "property_tests/options.h"
-#include "property_tests/verdict.h"
+#include "cli/program/isolated.h"
+#include "cli/program/options.h"
+#include "property_tests/laws/verdict.h"
 
 namespace delassus::cli {
 

@@ -14,9 +14,9 @@
 
 #include "algorithms/delassus.h"
 #include "models/robot.h"
-#include "property_tests/mjcf_reading.h"
-#include "property_tests/second_reading.h"
-#include "property_tests/verdict.h"
+#include "property_tests/second_reading/mjcf_reading.h"
+#include "property_tests/second_reading/second_reading.h"
+#include "property_tests/laws/verdict.h"
 #include "reference/sdf_witness.h"
 #include "reference/sensitivity.h"
 #include "reference/urdf_witness.h"

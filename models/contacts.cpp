@@ -7,13 +7,13 @@
 
 #include <Eigen/Geometry>
 
-#include "models/box_contacts.h"
-#include "models/capsule_box.h"
-#include "models/convex_contacts.h"
-#include "models/farthest.h"
-#include "models/hull.h"
-#include "models/near_pairs.h"
-#include "models/segments.h"
+#include "models/shapes/box_contacts.h"
+#include "models/shapes/capsule_box.h"
+#include "models/shapes/convex_contacts.h"
+#include "models/shapes/farthest.h"
+#include "models/shapes/hull.h"
+#include "models/shapes/near_pairs.h"
+#include "models/shapes/segments.h"
 
 namespace delassus {
 

@@ -7,10 +7,10 @@
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
 #include "algorithms/mechanism/regularity.h"
-#include "models/mjcf.h"
-#include "models/sdf.h"
-#include "models/urdf.h"
-#include "models/urdf_xml.h"
+#include "models/formats/mjcf.h"
+#include "models/formats/sdf.h"
+#include "models/formats/urdf.h"
+#include "models/formats/urdf_xml.h"
 
 namespace delassus {
 namespace {

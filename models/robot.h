@@ -61,7 +61,7 @@ struct Robot {
     Index body, master;  ///< bodies moved by the joints
     double multiplier, offset;
   };
-  /// A collision mesh, not read yet: models/mesh.h does that where contacts are looked for.
+  /// A collision mesh, not read yet: models/shapes/mesh.h does that where contacts are looked for.
   struct Mesh {
     Index body;
     Pose<double> placement;               ///< of the mesh's frame in the body

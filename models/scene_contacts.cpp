@@ -5,8 +5,8 @@
 
 #include "algorithms/errors/closest.h"
 #include "algorithms/errors/message.h"
-#include "models/between.h"
-#include "models/mesh.h"
+#include "models/shapes/between.h"
+#include "models/shapes/mesh.h"
 #include "models/scene_loader.h"
 
 namespace delassus {

@@ -8,7 +8,7 @@
 #include "models/box_piles.h"
 #include "models/scene.h"
 #include "models/swimmer.h"
-#include "models/yaml.h"
+#include "models/formats/yaml.h"
 
 namespace delassus {
 namespace {

@@ -8,7 +8,7 @@
 #include "models/contacts.h"
 #include "models/scene.h"
 #include "models/robot.h"
-#include "models/yaml.h"
+#include "models/formats/yaml.h"
 
 namespace delassus {
 

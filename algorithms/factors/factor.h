@@ -87,7 +87,7 @@ template <class T> class Factor {
   [[nodiscard]] Index bytes() const;
 
  private:
-  template <class> friend class FactorView;  // reads intermediate numbers: property_tests/digits.cpp
+  template <class> friend class FactorView;  // reads intermediate numbers: property_tests/laws/digits.cpp
 
   enum Filled : int { never, from_the_start, with_rows, by_a_copy };  // how inertia_ of a step gets its numbers before it runs
   struct JointRows {

@@ -233,7 +233,7 @@ template <class T> void Mechanism<T>::fill(Problem<T>& out) const {
   for (const Terms& terms : terms_) term_rows(terms, out.S, out.K);
 }
 
-#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/unit/mechanism/jet.cpp has scalars of its own
 template class Mechanism<double>;
 template class Mechanism<float>;
 template class Mechanism<Quad>;

@@ -156,7 +156,7 @@ void Mechanism<T>::term_rows(const Terms& all, const std::vector<Vector6<T>>& S,
   }
 }
 
-#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/unit/mechanism/jet.cpp has scalars of its own
 #define DELASSUS_INSTANTIATE(T)                                                                                                   \
   template void Mechanism<T>::compile_constraint(const Model&, const Constraint&, const Structure::LinkConstraint&, std::size_t); \
   template void Mechanism<T>::pair_rows(const Pair&, std::vector<Vector6<T>>&) const;                                             \

@@ -151,7 +151,7 @@ template <class T> void Motion<T>::velocity_products(std::vector<Vector6<T>>& ou
   }
 }
 
-#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/unit/mechanism/jet.cpp has scalars of its own
 #define DELASSUS_INSTANTIATE(T)                                                                              \
   template Motion<T>::Motion(const Mechanism<T>&);                                                          \
   template void Motion<T>::update(const VectorX<T>&);                                                       \

@@ -99,7 +99,7 @@ template <class T> void Motion<T>::bias_rows(VectorX<T>& out) const {
   for (const Terms& terms : mechanism_->terms_) terms_bias(terms, out.data() + s.link_constraints[terms.constraint].row);
 }
 
-#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/jet.cpp has scalars of its own
+#ifndef DELASSUS_DEFINITIONS_ONLY  // property_tests/unit/mechanism/jet.cpp has scalars of its own
 #define DELASSUS_INSTANTIATE(T) template void Motion<T>::bias_rows(VectorX<T>&) const;
 DELASSUS_INSTANTIATE(double)
 DELASSUS_INSTANTIATE(float)

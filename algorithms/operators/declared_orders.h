@@ -2,7 +2,7 @@
 //
 // What     the O(…) of the table of operators, made exact enough to be held: `n d²` is Σ_i n_i d_i², `m² d` is Σ_i n_i r_i², so that a
 //          tree that branches is not charged for one that does not.
-// Held     bench/scaling.h: counted operations grow as these sums on every ladder (docs/ladders.md), ± 0.02 in the order.
+// Held     bench/scaling/scaling.h: counted operations grow as these sums on every ladder (docs/ladders.md), ± 0.02 in the order.
 #pragma once
 
 #include <array>

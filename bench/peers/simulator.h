@@ -1,4 +1,4 @@
-// Programs that let a scene move, ours among them, and what each must tell of a step so that it can be judged (bench/step_residual.h).
+// Programs that let a scene move, ours among them, and what each must tell of a step so that it can be judged (bench/simulation/step_residual.h).
 // Those from outside: one source per program, compiled where it was found (CMakeLists.txt); none of their code is here.
 #pragma once
 

@@ -14,7 +14,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/plain -G ${GENERATOR} -DCMAKE_PREFI
 run(${CMAKE_COMMAND} --build ${WORK}/plain --target consumer memory)
 run(${WORK}/plain/consumer)
 run(${WORK}/plain/memory)
-foreach(private models/yaml.h models/mesh.h algorithms/factors/factor.h)
+foreach(private models/formats/yaml.h models/shapes/mesh.h algorithms/factors/factor.h)
   if(EXISTS ${WORK}/prefix/include/delassus/${private})
     message(FATAL_ERROR "${private} is installed, and is no public header")
   endif()

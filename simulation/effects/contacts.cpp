@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "algorithms/kit/counted.h"
-#include "models/between.h"
+#include "models/shapes/between.h"
 
 namespace delassus::simulation {
 namespace {

@@ -1,9 +1,0 @@
-// A build without MuJoCo.
-#include "property_tests/mjcf_reading.h"
-
-namespace delassus {
-
-std::unique_ptr<SecondReading> mjcf_reading(const RobotOptions&) { return nullptr; }
-std::string mujoco_refuses(const std::string&) { return {}; }
-
-}  // namespace delassus
