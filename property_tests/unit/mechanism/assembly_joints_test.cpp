@@ -64,6 +64,30 @@ TEST(Assembly, a_coupling_keeps_the_freedom_it_names) {
   EXPECT_NE(at[2], 0.25);
 }
 
+// A note for terms that turn freely, none for those of a planar joint; what only slid is not said to have turned, nor the other way.
+TEST(Assembly, notes_say_what_moved_and_what_has_no_position) {
+  const auto coupled = [&](const std::string& joint) { return "  - {kind: coupling, terms: [{joint: r/s, coefficient: 2}, {joint: " + joint + ", coefficient: 3}]}\n"; };
+  const Scene s = scene_of(plate(), "s: 1, p: [0, 0, 0.25]", pin + coupled("r/p"));
+  EXPECT_FALSE(has_note(s, "have no position"));
+  EXPECT_TRUE(has_note(scene_of(plate(), "s: 1, p: [0, 0, 0.25]", pin, "hold: [r/p]\n"), "given values: r/carriage by 0.0318 m (hold"));
+  const Scene bar = scene_of(four_bar("told.urdf"), "j1: 1.0, j2: -0.5, j3: 1.7", point_loop, "hold: [r/j1, r/j2]\n");
+  EXPECT_TRUE(has_note(bar, " rad (hold")) << bar.notes.at(0);
+}
+
+TEST(Assembly, of_many_joints_that_moved_six_are_named_and_the_others_counted) {
+  std::string links = link("base"), joints, given;
+  for (int k = 1; k <= 8; ++k) {
+    const std::string n = std::to_string(k);
+    links += link("l" + n);
+    joints += joint({"j" + n, k == 1 ? "base" : "l" + std::to_string(k - 1), "l" + n, k == 1 ? "xyz=\"0 0 0\"" : "xyz=\"1 0 0\""});
+    given += (k == 1 ? "" : ", ") + ("j" + n) + ": 0.3";
+  }
+  const Scene s = scene_of(write("eight.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + links + joints + "</robot>\n"), given,
+                           "  - {kind: point, of: r/l8, at: [1, 0, 0], to: world, to_at: [3, 0, 4]}\n");
+  ASSERT_EQ(s.assembly.moves.size(), 8u);
+  EXPECT_TRUE(has_note(s, " rad and 2 more (hold")) << s.notes.at(0);
+}
+
 TEST(Assembly, a_held_robot_keeps_its_base) {
   const std::string robot = "robots:\n  - {name: r, urdf: " + plate() + ", base: free, joints: {s: 0.5}}\n", box = "boxes:\n  - {name: b, mass: 1, size: [1, 1, 1], pose: {xyz: [3, 0, 0]}}\n";
   const std::string loop = "constraints:\n  - {kind: point, of: r/carriage, at: [0, 0, 0], to: b, to_at: [-1, 0, 0]}\n";

@@ -65,6 +65,17 @@ TEST(Standing, a_fixed_base_is_touched_by_others_and_by_its_own_arm_where_asked_
   EXPECT_EQ(s.notes, std::vector<std::string>{}) << "nothing is left out";
 }
 
+// Two robots on bases that stand, each with a body that floats: each arm leaves its own base alone, and touches the other's.
+TEST(Standing, each_arm_leaves_its_own_base_alone) {
+  const std::string floats = "<joint name='free' type='floating'><parent link='base'/><child link='loose'/><origin xyz='0 5 0'/></joint>";
+  const std::string robot = "<robot name='arm'>" + link("base", "0.2 0.2 0.2", 0) + link("upper", "0.4 0.1 0.1", 0.25) + link("loose", "0.1 0.1 0.1", 0) + joint("base", "upper", -0.1) + floats + "</robot>";
+  const auto scene = [&](double apart) {
+    return read("robots:\n  - {name: one, file: robot.urdf, base: fixed}\n  - {name: two, file: robot.urdf, base: fixed, pose: {xyz: [" + std::to_string(apart) + ", 0, 0]}}\ncontacts: detect\n", robot);
+  };
+  EXPECT_TRUE(scene(3).model.constraints.empty());
+  EXPECT_FALSE(scene(0.4).model.constraints.empty()) << "the arm of one lies in the base of two";
+}
+
 // What touches its own base at the given pose stands so by its model.
 TEST(Standing, what_touches_its_base_from_the_start_is_left_out) {
   const std::string robot = "<robot name='arm'>" + link("base", "0.2 0.2 0.2", 0) + link("upper", "0.4 0.1 0.1", 0.25) + link("lower", "0.9 0.1 0.1", -0.45) + joint("base", "upper", 0.15) +

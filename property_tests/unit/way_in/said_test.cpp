@@ -144,5 +144,37 @@ TEST(Said, lines_of_names) {
   EXPECT_EQ(lines.element("joint", "a"), "joint \"a\"");
 }
 
+/// What a scene file is refused with, without the file's name.
+std::string scene_complaint(const std::string& text) {
+  const std::string file = written("said.yaml", text);
+  try {
+    (void)load_scene(file);
+  } catch (const ModelError& e) {
+    const std::string said = e.what();
+    EXPECT_EQ(said.find(file), 0u) << said;
+    return said.substr(std::min(file.size(), said.size()));
+  }
+  return "";
+}
+
+TEST(Said, of_scene_files) {
+  EXPECT_EQ(scene_complaint("gravity: [0, 0, 0]\n---\n").substr(0, 3), ":2:");
+  EXPECT_EQ(scene_complaint("gravity: [0, 0, 0]\n---\na: 1\n").substr(0, 3), ":3:");
+  EXPECT_NE(scene_complaint("boxes:\n  - {name: [b], mass: 1, size: [1, 1, 1]}\n").find("is no text"), std::string::npos);
+  EXPECT_NE(scene_complaint("boxes:\n  - {name: '', mass: 1, size: [1, 1, 1]}\n").find("is no text"), std::string::npos);
+}
+
+// A joint is looked for in the robot that is named before the slash, and in no other.
+TEST(Said, of_joints_of_another_robot) {
+  const std::string links = R"(<link name="a"/><link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>)";
+  (void)written("said.urdf", "<robot name=\"r\">" + links + "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>");
+  const auto held = [](const std::string& joint) {
+    return scene_complaint("robots:\n  - {name: arm, urdf: said.urdf, base: fixed}\n  - {name: ar, urdf: said.urdf, base: fixed}\nconstraints:\n  - {kind: joint_lock, joint: " + joint + "}\n");
+  };
+  EXPECT_EQ(held("arm/j"), "");
+  EXPECT_EQ(held("ar/j"), "");
+  for (const char* joint : {"arn/j", "leg/j", "ar-j", "j", "arm"}) EXPECT_NE(held(joint).find(std::string("joint \"") + joint + "\" does not exist or is fixed"), std::string::npos) << held(joint);
+}
+
 }  // namespace
 }  // namespace delassus::said_test
