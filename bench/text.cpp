@@ -30,6 +30,8 @@ std::string three_digits(double x) {
   return format("%.0f", x);
 }
 
+std::string rough_digit(double x) { return std::isnan(x) ? "–" : format("%.0e", x); }
+
 std::string ratio_text(double ratio) { return ratio > 0 && ratio < 0.001 ? "<0.001" : three_digits(ratio); }
 
 namespace {

@@ -12,6 +12,8 @@ namespace delassus::bench {
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 /// Three significant digits without exponent: 0.0123, 1.23, 123, 12300; `–` for NaN.
 [[nodiscard]] std::string three_digits(double x);
+/// One significant digit with its exponent, for what is known no better: 3e-16; `–` for NaN.
+[[nodiscard]] std::string rough_digit(double x);
 /// An error ratio: three digits, `<0.001` below that, 0 for exact agreement.
 [[nodiscard]] std::string ratio_text(double ratio);
 /// A count with prefix: 950, 12.3 k, 1.23 M; `–` below zero.

@@ -70,7 +70,7 @@ std::string laws_section(const Results& r) {
   std::string s = "<h2 id=\"laws\">Laws</h2><p>A law is an identity between two routes. Its error is divided by the unit "
     "roundoff of the arithmetic and by a named bound; the ratio must stay below 30, the only tolerance there is. The table "
     "shows the worst ratio over all scenes; 0 is exact agreement.</p>" + failures(r);
-  s += "<details><summary>" + std::to_string(r.laws.size()) + " laws and the worst ratio of each operator</summary><div class=\"wide tables\"><table class=\"matrix\"><thead><tr><th>law</th>";
+  s += "<details><summary>" + std::to_string(r.laws.size()) + " laws and the worst ratio of each operator</summary><div class=\"wide tables\"><table class=\"matrix upright\"><thead><tr><th>law</th>";
   for (const OperatorInfo& o : r.operators) s += "<th>" + breakable(o.name) + "</th>";
   s += "</tr></thead><tbody>";
   for (const RowInfo& law : r.laws) {

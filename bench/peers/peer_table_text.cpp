@@ -11,7 +11,6 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-std::string two_digits(double x) { return std::isnan(x) ? "–" : format("%.0e", x); }
 std::string title(std::size_t k) {
   std::string s = name(step(k));
   std::replace(s.begin(), s.end(), '_', ' ');
@@ -92,7 +91,7 @@ std::string scene_table(const PeerScene& s) {
     if (!e.cannot.empty() || !e.disagrees.empty()) continue;
     std::vector<std::string> line{e.name + (e.from_q ? " *" : "")};
     for (std::size_t k = 0; k < step_count; ++k) line.push_back(three_digits(e.time[k].median));
-    for (const double error : {e.M_error, e.product_error, e.force_error}) line.push_back(two_digits(error));
+    for (const double error : {e.M_error, e.product_error, e.force_error}) line.push_back(rough_digit(error));
     cells.push_back(line);
   }
   std::string out = "#### " + s.scene + format(": %lld degrees of freedom, %lld rows, R⁻¹ = %g", static_cast<long long>(s.dofs), static_cast<long long>(s.rows), s.smallest_damping) +

@@ -67,7 +67,7 @@ void compare(Simulator& s, const Scene& scene, Simulator& ours, SpeedEntry& entr
   if (!(entry.free_error <= same)) entry.disagrees = format("accelerations without rows: relative error %.1e, above %.1e", entry.free_error, same);
 }
 
-constexpr double StepResidual::*numbers[] = {&StepResidual::natural, &StepResidual::approach, &StepResidual::cone, &StepResidual::momentum, &StepResidual::depth};
+constexpr double StepResidual::*residuals[] = {&StepResidual::natural, &StepResidual::approach, &StepResidual::cone, &StepResidual::momentum, &StepResidual::depth};
 
 /// A run from the start: how far it comes, and its residuals on the way.
 void judge(Simulator& s, const Model& model, int steps, SpeedEntry& entry) {
@@ -88,7 +88,7 @@ void judge(Simulator& s, const Model& model, int steps, SpeedEntry& entry) {
   if (entry.steps > 0) entry.iterations = static_cast<double>(iterations) / static_cast<double>(entry.steps);
   entry.median = entry.worst = not_judged;
   if (seen.empty()) return;
-  for (const auto number : numbers) {
+  for (const auto number : residuals) {
     std::vector<double> all;
     for (const StepResidual& r : seen) all.push_back(std::isnan(r.*number) ? INFINITY : r.*number);
     std::sort(all.begin(), all.end());

@@ -11,7 +11,6 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-std::string two_digits(double x) { return std::isnan(x) ? "–" : format("%.0e", x); }
 std::string times(double x) { return three_digits(x) + (std::isnan(x) ? "" : "×"); }
 std::string as_printed(double x) { return format("%g", x); }
 
@@ -122,17 +121,17 @@ std::string accuracy_table(const TableOne& t) {
                ": motion", certified_inverse + std::string(": λ"), ": motion", "certificate", "first / " + std::string(free_inverse), "of which certificate", "worst of all"}};
   for (const TableRow& r : t.rows) {
     const Entry *free = r.find(free_product), *base = r.find(explicit_baseline), *inverse = r.find(free_inverse), *certified = r.find(certified_inverse);
-    const auto error = [](const Entry* e, double Entry::*x) { return e ? two_digits(e->*x) : std::string("not asked"); };
+    const auto error = [](const Entry* e, double Entry::*x) { return e ? rough_digit(e->*x) : std::string("not asked"); };
     const Entry* worst = nullptr;
     for (const Entry& e : r.entries)
       if (!std::isnan(e.worst_error()) && (!worst || e.worst_error() > worst->worst_error())) worst = &e;
     const std::string damping = format("%g", r.smallest_damping) + (r.smallest_damping == r.largest_damping ? "" : format(" … %g", r.largest_damping));
     const double extra = certified && certified->has(Use::fast_first_solve) ? certified->median(Use::first_solve) / certified->of(Use::fast_first_solve).median : NAN;
-    cells.push_back({r.scene, damping, two_digits(r.condition), error(free, &Entry::product_error), r.product_reference, error(base, &Entry::product_error),
+    cells.push_back({r.scene, damping, rough_digit(r.condition), error(free, &Entry::product_error), r.product_reference, error(base, &Entry::product_error),
                      error(base, &Entry::force_error), error(base, &Entry::motion_error), error(inverse, &Entry::force_error), error(inverse, &Entry::motion_error),
                      error(certified, &Entry::force_error), error(certified, &Entry::motion_error),
-                     certified ? (certified->bound < 0 ? "none" : two_digits(certified->bound)) : "not asked", times(ratio(certified, inverse, Use::first_solve)), times(extra),
-                     worst ? worst->op + " " + two_digits(worst->worst_error()) : "–"});
+                     certified ? (certified->bound < 0 ? "none" : rough_digit(certified->bound)) : "not asked", times(ratio(certified, inverse, Use::first_solve)), times(extra),
+                     worst ? worst->op + " " + rough_digit(worst->worst_error()) : "–"});
   }
   return "### Accuracy: relative errors against 113 bits, damping, and what a certificate adds\na: of the product; λ: of the largest force; motion: ‖δν‖_M/‖ν‖_M. The last but one: first solve with refinement "
          "and certificate over the same without.\n\n" + markdown_table(cells);

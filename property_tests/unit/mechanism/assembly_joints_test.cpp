@@ -69,8 +69,9 @@ TEST(Assembly, notes_say_what_moved_and_what_has_no_position) {
   const auto coupled = [&](const std::string& joint) { return "  - {kind: coupling, terms: [{joint: r/s, coefficient: 2}, {joint: " + joint + ", coefficient: 3}]}\n"; };
   const Scene s = scene_of(plate(), "s: 1, p: [0, 0, 0.25]", pin + coupled("r/p"));
   EXPECT_FALSE(has_note(s, "have no position"));
-  EXPECT_TRUE(has_note(scene_of(plate(), "s: 1, p: [0, 0, 0.25]", pin, "hold: [r/p]\n"), "given values: r/carriage by 0.0318 m (hold"));
-  const Scene bar = scene_of(four_bar("told.urdf"), "j1: 1.0, j2: -0.5, j3: 1.7", point_loop, "hold: [r/j1, r/j2]\n");
+  const Scene slid = scene_of(plate(), "s: 1.25, p: [0, 0, 0]", pin, "hold: [r/p]\n");
+  EXPECT_TRUE(has_note(slid, "given values: r/s by 0.25 m (hold")) << slid.notes.at(0);
+  const Scene bar = scene_of(four_bar("told.urdf"), "j1: 1.0, j2: -0.5, j3: 1.7", point_loop, "hold: [r/j1]\n");
   EXPECT_TRUE(has_note(bar, " rad (hold")) << bar.notes.at(0);
 }
 
@@ -83,7 +84,7 @@ TEST(Assembly, of_many_joints_that_moved_six_are_named_and_the_others_counted) {
     given += (k == 1 ? "" : ", ") + ("j" + n) + ": 0.3";
   }
   const Scene s = scene_of(write("eight.urdf", "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + links + joints + "</robot>\n"), given,
-                           "  - {kind: point, of: r/l8, at: [1, 0, 0], to: world, to_at: [3, 0, 4]}\n");
+                           "  - {kind: point, of: r/l8, at: [1, 0, 0], to: world, to_at: [3, 0, 4], loop: true}\n");
   ASSERT_EQ(s.assembly.moves.size(), 8u);
   EXPECT_TRUE(has_note(s, " rad and 2 more (hold")) << s.notes.at(0);
 }
