@@ -39,14 +39,16 @@ template <class T> struct RowSet {
   }
 };
 
-inline constexpr double gap_share = 0.2;  ///< β: of a penetration that is taken back in a step
-inline constexpr double gap_speed = 1;    ///< fastest [m/s or rad/s]
+inline constexpr double gap_share = 0.2;   ///< β: of a deep penetration that is taken back in a step
+inline constexpr double gap_speed = 1;     ///< fastest [m/s or rad/s]
+inline constexpr double even_speed = 0.01; ///< up to this a penetration is taken back like an opening is closed, at once [m/s or rad/s]
 
-/// Least velocity of a row whose gap is φ: −φ/h where it is open, min(β |φ|/h, gap_speed) where it is not.
+/// Least velocity of a row whose gap is φ: −φ/h, and of what exceeds even_speed the share β, at most gap_speed. The same slope on both
+/// sides of φ = 0: four corners of one face have gaps that fit together, and so must their velocities, or one of them has to open.
 template <class T> [[nodiscard]] T target_of_gap(const T& gap, const T& h) {
-  if (!(gap < T(0))) return -gap / h;
-  const T speed = T(gap_share) * (-gap) / h;
-  return speed < T(gap_speed) ? speed : T(gap_speed);
+  const T speed = -gap / h;
+  if (!(speed > T(even_speed))) return speed;
+  return std::min(T(gap_speed), T(T(even_speed) + T(gap_share) * (speed - T(even_speed))));
 }
 
 }  // namespace delassus::simulation

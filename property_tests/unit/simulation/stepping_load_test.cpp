@@ -1,11 +1,13 @@
 // Many boxes that settle: what a step does per contact does not depend on how many there are.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <ctime>
 
 #include "algorithms/kit/counted.h"
 #include "property_tests/unit/allocations.h"
 #include "property_tests/campaigns/settling.h"
+#include "property_tests/unit/simulation/single_step.h"
 #include "property_tests/unit/simulation/stepping_scenes.h"
 #include "simulation/islands.h"
 #include "simulation/solvers.h"
@@ -61,9 +63,10 @@ TEST(Load, a_wall_needs_no_more_iterations_for_its_length) {
   EXPECT_LT(many.iterations_at_end, 2 * few.iterations_at_end);
 }
 
-// Whether a solver takes a problem is asked in every step.
-TEST(Load, what_is_refused_is_known_in_the_time_of_the_rows) {
-  const auto time_of = [](Index contacts) {
+// Whether a solver takes a problem is asked in every step: a search among the constraints for every contact.
+TEST(Load, what_is_refused_is_known_by_a_search_for_each_contact) {
+  if (!can_count_instructions()) GTEST_SKIP() << "instructions are not counted here";
+  const auto instructions = [](Index contacts) {
     auto s = std::make_shared<Structure>();
     for (Index i = 0; i < contacts; ++i) s->add_body(ground, 6);
     for (Index i = 0; i < contacts; ++i) s->add_link_constraint(3, {i});
@@ -72,37 +75,30 @@ TEST(Load, what_is_refused_is_known_in_the_time_of_the_rows) {
     p.resize(3 * contacts);
     for (Index i = 0; i < contacts; ++i) append_contact(p, 0.5);
     const auto solver = find_solver("proximal").make();
-    double best = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 5; ++k) {
-      const double start = processor_time();
-      EXPECT_EQ(solver->refusal(p), "");
-      best = std::min(best, processor_time() - start);
-    }
-    return best;
+    EXPECT_EQ(solver->refusal(p), "");
+    return static_cast<double>(count_instructions([&] { (void)solver->refusal(p); }).all);
   };
-  const double few = time_of(1000), many = time_of(8000);
-  EXPECT_LT(many / few, 24) << few << " s and " << many << " s";
+  EXPECT_LT(instructions(400) / instructions(50), 8 * std::log(400) / std::log(50));
 }
 
-// Islands are made in the time of their own bodies: eight times as many take eight times as long, not sixty-four.
-TEST(Load, islands_are_made_in_the_time_of_their_bodies) {
-  const auto time_of = [](Index trees) {
+// Islands are made by instructions like their own bodies: eight times as many, not sixty-four.
+TEST(Load, islands_are_made_by_instructions_like_their_bodies) {
+  if (!can_count_instructions()) GTEST_SKIP() << "instructions are not counted here";
+  const auto instructions = [](Index trees) {
     Structure s;
     for (Index i = 0; i < trees; ++i) s.add_body(ground, 6);
     for (Index i = 0; i < trees; ++i) s.add_link_constraint(3, {i});
     const Islands islands(s);
-    double best = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 5; ++k) {
-      const double start = processor_time();
-      std::size_t bodies = 0;
+    std::size_t bodies = 0;
+    const auto make = [&] {
+      bodies = 0;
       for (Index t = 0; t < trees; ++t) bodies += Part<double>(s, islands, {t}).bodies.size();
-      best = std::min(best, processor_time() - start);
-      EXPECT_EQ(bodies, static_cast<std::size_t>(trees));
-    }
-    return best;
+    };
+    make();
+    EXPECT_EQ(bodies, static_cast<std::size_t>(trees));
+    return static_cast<double>(count_instructions(make).all);
   };
-  const double few = time_of(500), many = time_of(4000);
-  EXPECT_LT(many / few, 24) << few << " s and " << many << " s";
+  EXPECT_LT(instructions(48) / instructions(6), 8.5);
 }
 
 }  // namespace
