@@ -22,6 +22,12 @@ template <class T> void FrictionShift<T>::plain(const ContactProblem<T>& p, cons
   }
 }
 
+template <class T> Index FrictionShift<T>::sliding(const ContactProblem<T>& p, const PrimalNewton<T>& point) const {
+  Index count = 0;
+  for (std::size_t e = 0; e < p.groups.size(); ++e) count += p.groups[e].cone == Cone::coulomb && !p.is_off(p.groups[e]) && point.slides(e);
+  return count;
+}
+
 // (1 − Φ') v
 template <class T> void FrictionShift<T>::multiply(const ContactProblem<T>& p, PrimalNewton<T>& point, const T* v, T* out) {
   moved_.setZero();

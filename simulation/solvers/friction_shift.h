@@ -22,6 +22,8 @@ template <class T> class FrictionShift {
   void plain(const ContactProblem<T>& p, const VectorX<T>& u);
   /// Γ ← s = share of the step of Newton from the Γ of the last point, whose answer λ (m) has the velocity u (m); R_inverse (m) is what that point had.
   [[nodiscard]] Report newton(const ContactProblem<T>& p, PrimalNewton<T>& point, const VectorX<T>& R_inverse, const VectorX<T>& lambda, const VectorX<T>& u, double share);
+  /// Contacts that slide at the λ of the last point.
+  [[nodiscard]] Index sliding(const ContactProblem<T>& p, const PrimalNewton<T>& point) const;
   /// Γ of a group [m/s], 0 where it has none.
   [[nodiscard]] const T& operator[](std::size_t group) const { return gamma_[static_cast<Index>(group)]; }
 

@@ -57,6 +57,9 @@ template <class T> class PrimalNewton {
   /// Whether λ of a Coulomb group is inside its cone.
   [[nodiscard]] bool sticks(std::size_t group) const { return projected_[group].region == Region::inside; }
 
+  /// Whether it is on the boundary of its cone.
+  [[nodiscard]] bool slides(std::size_t group) const { return projected_[group].region == Region::boundary; }
+
   // One step taken apart, for tests of the Hessian.
   /// λ(u) with its blocks H in hessian().
   void evaluate(const VectorX<T>& R_inverse, const VectorX<T>& u, VectorX<T>& lambda);

@@ -1,5 +1,7 @@
 #include "simulation/solvers/proximal.h"
 
+#include <cmath>
+
 namespace delassus::simulation {
 
 template <class T> void ProximalNewton<T>::do_analyze(const ContactProblem<T>& p) {
@@ -53,14 +55,16 @@ template <class T> void ProximalNewton<T>::Weight::follow(double reached, int in
 }
 
 // How Γ goes on: see the header.
-template <class T> typename ProximalNewton<T>::Steps::Next ProximalNewton<T>::Steps::after(double reached) {
+template <class T> typename ProximalNewton<T>::Steps::Next ProximalNewton<T>::Steps::after(double reached, Index sliding, bool settled) {
   if (made_ > 0 && !(reached < before_)) {
     if (share == 1 && made_ < watched) return ++made_, Next::newton;
     share = std::max(least_share, share / 4);
     made_ = 0;
     return Next::back;
   }
-  const bool slow = made_ > 0 || reached > 0.5 * before_;
+  const double points = 1 + solve_of_a_point * static_cast<double>(sliding);  // that a step of Newton costs
+  const double fell = reached / before_;
+  const bool slow = made_ > 0 || (sliding > 0 && (fell > 0.5 || (settled && std::pow(fell, points) > gained)));
   if (made_ > 0) share = std::min(1.0, 2 * share);
   before_ = reached;
   made_ = slow ? 1 : 0;
@@ -78,7 +82,7 @@ template <class T> SolverReport ProximalNewton<T>::do_solve(const ContactProblem
     double reached = this->judged(p, lambda).natural;
     if (reached <= wanted.velocity) return report;
     if (report.iterations >= wanted.iterations) break;
-    const Next next = p.law == FrictionLaw::exact ? steps.after(reached) : Next::plain;
+    const Next next = p.law == FrictionLaw::exact ? steps.after(reached, gamma_.sliding(p, newton_), inner.iterations <= 2) : Next::plain;
     if (next == Next::plain || next == Next::first) weight.follow(reached, inner.iterations);
     if (next == Next::first) saved_ = lambda;
     if (next == Next::back) {
