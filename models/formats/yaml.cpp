@@ -14,7 +14,7 @@
 namespace delassus {
 namespace {
 
-/// Where documents start, and what they hold first.
+/// Where documents start, and what they hold first: an empty one a null.
 class Documents : public YAML::EventHandler {
  public:
   std::vector<YAML::Mark> starts, contents;
@@ -43,8 +43,7 @@ YAML::Node only_document(const std::string& file) {
   while (found.starts.size() < 3 && parser.HandleNextDocument(found)) {}
   if (found.starts.size() < 2) return found.starts.empty() ? YAML::Node() : YAML::LoadFile(file);
   if (found.starts.size() > 2 && found.starts[1].pos == found.starts[2].pos) throw YAML::ParserException(found.starts[1], "nothing can begin with a comma");
-  const YAML::Mark& second = found.contents.size() > 1 ? found.contents[1] : found.starts[1];
-  throw ModelError(file + ":" + std::to_string(second.line + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
+  throw ModelError(file + ":" + std::to_string(found.contents.at(1).line + 1), "YAML", "a second document, after ---", "one document per file; put the second into a file of its own");
 }
 
 }  // namespace
