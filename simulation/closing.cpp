@@ -32,10 +32,7 @@ template <class T> void Closing<T>::measure(const VectorX<T>& q, VectorX<T>& gap
   mechanism_->update(q);
   mechanism_->poses(poses_);
   Index row = 0;
-  for (const Constraint& c : model_->constraints) {
-    const VectorX<T> e = closure_error(*model_, c, poses_);
-    for (Index k = 0; k < e.size(); ++k) gap[row++] = e[k];
-  }
+  for (const Constraint& c : model_->constraints) row += closure_error(*model_, c, poses_, gap.data() + row);
   for (Loop& l : loops_) {
     l.*largest = T(0);
     for (const Index r : l.of.rows)
@@ -52,12 +49,14 @@ template <class T> void Closing<T>::displace(Loop& l) {
 
 /// The displaced q of its bodies, where it is closer.
 template <class T> void Closing<T>::keep(Loop& l, VectorX<T>& q) {
-  l.ends = !l.moved || !(l.then < l.open);
-  if (l.ends) return;
+  if (!l.moved || !(l.then < l.open)) {
+    l.ends = !l.moved || !l.of.path->yield();
+    return;
+  }
   for (const Index i : l.of.bodies)
     for (Index k = model_->first_q[static_cast<std::size_t>(i)]; k < model_->first_q[static_cast<std::size_t>(i) + 1]; ++k) q[k] = q_[k];
   for (const Index r : l.of.rows) gap_[r] = gap_then_[r];
-  l.ends = !(l.then + l.then < l.open);
+  l.ends = !(l.then + l.then < l.open) && !l.of.path->yield();
   l.open = l.then;
 }
 
@@ -67,7 +66,7 @@ template <class T> void Closing<T>::after(Moment<T>& now, State<T>& next) {
     l.ends = now.resting != nullptr && (*now.resting)[static_cast<std::size_t>(l.of.bodies[0])] != 0;
     if (!l.ends) now.drift = std::max(now.drift, static_cast<double>(l.open));
   }
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 6; ++k) {
     bool any = false;
     q_ = next.q;
     for (Loop& l : loops_) {

@@ -2,9 +2,10 @@
 //
 //   q ← q ⊕ d,   min ‖d‖_M̂  with  J d = −φ(q)
 // How      chord steps with J and M̂ of the step that has just been taken: no new factor; φ falls from order h² by a factor of order h
-//          each time. Ends at 1e-12 m and rad, when φ no longer halves, or after five; trees that no row joins end apart. Velocities
+//          each time. Where it no longer halves rows that depend on each other give way (yielding.h). Ends at 1e-12 m and rad, when φ
+//          does not halve for all that, or after six; trees that no row joins end apart. Velocities
 //          are not touched, so closing gives no energy but that of the displacement d in the fields.
-// Cost     a solve and the poses, twice as a rule.
+// Cost     a solve and the poses, two or three times as a rule.
 #pragma once
 
 #include "simulation/paths.h"

@@ -20,10 +20,14 @@ Constrained<T>::Constrained(const Model& model, Mechanism<T>& mechanism, const s
 
 /// Of the problem of the last update of the operator; rows that contradict each other give way.
 template <class T> Report Constrained<T>::solve(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted) {
-  Report report = operator_->solve_kkt(push, wanted, change_, lambda_, Accuracy{accuracy_}, work_);
-  if (report.status != Status::inconsistent) return report;
+  const Report report = operator_->solve_kkt(push, wanted, change_, lambda_, Accuracy{accuracy_}, work_);
+  return report.status == Status::inconsistent ? solve_yielding(problem, push, wanted) : report;
+}
+
+/// At once with all points.
+template <class T> Report Constrained<T>::solve_yielding(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted) {
   if (!yielding_) yielding_ = std::make_unique<Yielding<T>>(problem.structure);
-  report = yielding_->update(problem, hard_);
+  const Report report = yielding_->update(problem, hard_);
   return report.ok() ? yielding_->solve(push, wanted, yielding_points, Accuracy{accuracy_}, change_, lambda_) : report;
 }
 
@@ -37,7 +41,7 @@ template <class T> Report Constrained<T>::accelerations(Moment<T>& now, VectorX<
   if (!floating_.empty()) {
     nu_.setConstant(T(0));
     for (const Index k : floating_) nu_.col(0).template segment<3>(k + 3) = three_of(nu.data() + k).cross(three_of(nu.data() + k + 3));
-    (void)tree_.update(*now.problem);
+    tree_.take(*now.problem);
     tree_.J(nu_, gap_);
     wanted_ += gap_;
   }
@@ -58,13 +62,9 @@ template <class T> T Constrained<T>::gap_at(const VectorX<T>& q, MatrixX<T>& gap
   mechanism_->poses(poses_);
   T largest(0);
   Index row = 0;
-  for (const Constraint& c : model_->constraints) {
-    const VectorX<T> e = closure_error(*model_, c, poses_);
-    for (Index k = 0; k < e.size(); ++k) {
-      gap(row++, 0) = e[k];
-      if (abs(e[k]) > largest) largest = abs(e[k]);
-    }
-  }
+  for (const Constraint& c : model_->constraints) row += closure_error(*model_, c, poses_, gap.data() + row);
+  for (Index k = 0; k < row; ++k)
+    if (abs(gap(k, 0)) > largest) largest = abs(gap(k, 0));
   return largest;
 }
 
@@ -74,20 +74,26 @@ template <class T> Report Constrained<T>::project(Moment<T>& now, State<T>& next
   T open = gap_at(next.q, gap_);
   now.drift = static_cast<double>(open);
   push_.setConstant(T(0));
-  for (int k = 0; report.ok() && k < 5 && open > T(closed); ++k) {
+  bool yields = false;
+  for (int k = 0; report.ok() && k < 6 && open > T(closed); ++k) {
     wanted_ = -gap_;
-    report = solve(problem, push_, wanted_);
+    if (!yields) report = operator_->solve_kkt(push_, wanted_, change_, lambda_, Accuracy::fastest(), work_);
+    yields = yields || report.status == Status::inconsistent;
+    if (yields) report = solve_yielding(problem, push_, wanted_);
     if (!report.ok()) break;
     q_ = next.q;
     d_ = change_.col(0);
     advance_.displace(d_, q_);
     const T then = gap_at(q_, gap_then_);
-    if (!(then < open)) break;
     const bool halved = then + then < open;
-    next.q = q_;
-    gap_.swap(gap_then_);
-    open = then;
-    if (!halved) break;
+    if (then < open) {
+      next.q = q_;
+      gap_.swap(gap_then_);
+      open = then;
+    }
+    if (halved) continue;
+    if (yields || operator_->dependent_rows().empty()) break;
+    yields = true;
   }
   now.left = static_cast<double>(open);
   if (!report.ok()) return report;
@@ -97,7 +103,7 @@ template <class T> Report Constrained<T>::project(Moment<T>& now, State<T>& next
   problem.armature = armature;
   report = operator_->update(problem, hard_);
   if (!report.ok()) return report;
-  (void)tree_.update(problem);
+  tree_.take(problem);
   nu_.col(0) = next.nu;
   tree_.J(nu_, wanted_);
   wanted_ = -wanted_;

@@ -32,6 +32,7 @@ template <class T> class Constrained {
  private:
   T gap_at(const VectorX<T>& q, MatrixX<T>& gap);
   Report solve(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted);
+  Report solve_yielding(const Problem<T>& problem, const MatrixX<T>& push, const MatrixX<T>& wanted);
 
   const Model* model_;
   Mechanism<T>* mechanism_;

@@ -46,6 +46,8 @@ EquationsPath<T>::EquationsPath(std::shared_ptr<const Structure> structure, Damp
   work_ = Workspace<T>(operator_->kkt_workspace());
   push_ = nu_ = motion_ = MatrixX<T>::Constant(structure->dofs(), 1, T(0));
   wanted_ = rows_ = MatrixX<T>::Constant(structure->rows, 1, T(0));
+  const bool hard = damping_.blocks.empty() && std::all_of(damping_.diagonal.begin(), damping_.diagonal.end(), [](const T& x) { return x == T(0); });
+  accuracy_of_correction_ = hard ? Accuracy::fastest().error : std::max(accuracy_, of_correction);
 }
 
 template <class T> StepReport EquationsPath<T>::velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) {
@@ -56,7 +58,7 @@ template <class T> StepReport EquationsPath<T>::velocities(Moment<T>& now, Vecto
   take(*now.problem);
   out.report = taken_;
   if (!out.report.ok()) return out;
-  (void)tree_.update(*now.problem);
+  tree_.take(*now.problem);
   push_.col(0) = now.h * *now.force;
   nu_.col(0) = now.state->nu;
   tree_.J(nu_, wanted_);
@@ -85,17 +87,25 @@ template <class T> Report EquationsPath<T>::correct(const VectorX<T>& gap, Vecto
   push_.setConstant(T(0));
   wanted_.col(0) = -gap;
   if (!yields_) {
-    const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{std::max(accuracy_, of_correction)}, work_);
+    const Report report = operator_->solve_kkt(push_, wanted_, motion_, rows_, Accuracy{accuracy_of_correction_}, work_);
     d = motion_.col(0);
     if (report.status != Status::inconsistent) return report;
+    yields_ = true;
+  }
+  if (!yielding_is_current_) {
     if (!yielding_) yielding_ = std::make_unique<Yielding<T>>(numbers_->structure);
     const Report updated = yielding_->update(*numbers_, damping_);
     if (!updated.ok()) return updated;
-    yields_ = true;
+    yielding_is_current_ = true;
   }
   const Report report = yielding_->solve(push_, wanted_, 1, Accuracy{accuracy_}, motion_, rows_);
   d = motion_.col(0);
   return report;
+}
+
+template <class T> bool EquationsPath<T>::yield() {
+  if (yields_ || operator_->dependent_rows().empty()) return false;
+  return yields_ = true;
 }
 
 template class FreePath<double>;

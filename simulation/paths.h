@@ -65,17 +65,20 @@ template <class T> class FreePath final : public Path<T> {
 
 template <class T> class EquationsPath final : public Path<T> {
  public:
-  static constexpr double of_correction = 1e-6;  ///< accuracy asked of a correction: relative, in the energy norm
+  static constexpr double of_correction = 1e-6;  ///< accuracy asked of a correction where rows give way: relative, in the energy norm
   EquationsPath(std::shared_ptr<const Structure> structure, Damping<T> damping, const std::string& op, double accuracy);
   [[nodiscard]] std::string_view name() const override { return "equations"; }
   StepReport velocities(Moment<T>& now, VectorX<T>& change, VectorX<T>& impulses) override;
   [[nodiscard]] Index bytes() const override { return operator_->bytes() + (yielding_ ? yielding_->bytes() : 0) + work_.size() * static_cast<Index>(sizeof(T)); }
 
   /// Numbers for `correct`, after a step that was solved by others.
-  void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_), numbers_ = &problem, yields_ = false; }
+  void take(const Problem<T>& problem) { taken_ = operator_->update(problem, damping_), numbers_ = &problem, yields_ = yielding_is_current_ = false; }
   /// The shortest change d of the joints, in the norm of M̂, with J d + R⁻¹μ = −gap, by the factor of the last step; rows that
-  /// contradict each other give way (yielding.h). A step of Newton: what is bent leaves more than of_correction of a gap of 10⁻⁶. The problem of `take` must live until then.
+  /// contradict each other give way (yielding.h). A step of Newton: what is bent leaves more than of_correction of a gap of 10⁻⁶. Of hard
+  /// rows one evaluation, that of the independent ones: what it leaves is seen in φ. The problem of `take` must live until then.
   Report correct(const VectorX<T>& gap, VectorX<T>& d);
+  /// Rows that depend on each other give way in further corrections; false: they do already, or there are none.
+  bool yield();
 
  private:
   bool is_rounding(const Report& report, const VectorX<T>& change);
@@ -84,8 +87,8 @@ template <class T> class EquationsPath final : public Path<T> {
   Report taken_;
   const Problem<T>* numbers_ = nullptr;
   std::unique_ptr<Yielding<T>> yielding_;
-  bool yields_ = false;  // since the last take
-  double accuracy_;
+  bool yields_ = false, yielding_is_current_ = false;  // since the last take
+  double accuracy_, accuracy_of_correction_;
   Workspace<T> work_;
   TreeOperators<T> tree_;
   MatrixX<T> push_, wanted_, motion_, rows_, nu_;

@@ -39,6 +39,11 @@ template <class T> class BlockDiagonal {
     for (const Index r : off_) x[r] = V{};
   }
   [[nodiscard]] const T& diagonal(Index row) const { return diagonal_[row]; }
+  /// Of the diagonal, blocks included.
+  [[nodiscard]] const T& entry(Index row) const {
+    const Index e = constraint_of_[row], r = row - rows_[e].first;
+    return has_dense_[e] ? dense_[first_[e] + r * rows_[e].count + r] : diagonal_[row];
+  }
   /// The block of constraint e (link constraints first, then joint constraints), rows × rows, or nullptr when diagonal.
   [[nodiscard]] const T* dense(Index e) const { return has_dense_[e] ? dense_.data() + first_[e] : nullptr; }
 

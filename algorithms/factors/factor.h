@@ -51,7 +51,7 @@ template <class T> class Factor {
   template <class V> [[nodiscard]] V energy(const V* tau, V* work) const;
 
   /// z with xᵀ J M⁻¹Jᵀ x' = Σ z_c z'_c / inverse_pivots()[c], c < columns(), by the backward sweep alone.
-  void half(const T* x, T* z, T* work) const;
+  template <class V> void half(const V* x, V* z, V* work) const;
   /// 1/D of the columns that Jᵀx reaches, in the order of the sweeps.
   [[nodiscard]] const T* inverse_pivots() const { return d_inverse_.data() + plan_->first_column[plan_->first_active]; }
   [[nodiscard]] Index columns() const { return plan_->active_columns(); }
@@ -120,7 +120,7 @@ template <class T> class Factor {
 
   template <class V> void scatter(const V* x, Six<V>* f, V* u) const;
   template <class V> void add_torques(const V* tau, V* u) const;
-  Matrix6<T> mobility(int i, SixBySix<T>* omega) const;
+  void mobility(int i, SixBySix<T>* omega, Six<T> (&V)[6]) const;
   template <class V> void velocities(const V* u, V* nu) const;
   // f and u begin at the first active step and column; those of phase A stand before them.
   template <class V> void backward(Plan::Runs runs, Six<V>* f, V* u) const;

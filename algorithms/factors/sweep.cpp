@@ -172,74 +172,78 @@ template <class T> template <class V> V Factor<T>::energy(const V* tau, V* work)
   return sum;
 }
 
-template <class T> void Factor<T>::half(const T* x, T* z, T* work) const {
-  Six<T>* const f = forces(work);
-  T* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<T>) / sizeof(T));
+template <class T> template <class V> void Factor<T>::half(const V* x, V* z, V* work) const {
+  Six<V>* const f = forces(work);
+  V* const u = work + plan_->active() * static_cast<Index>(sizeof(Six<V>) / sizeof(V));
   scatter(x, f, u);
   backward(plan_->active_runs(), f, u);
   std::copy(u, u + plan_->active_columns(), z);
 }
 
-// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ); of ν_i, in the basis of D:  D⁻¹ + Wᵀ Ω_π W
-template <class T> Matrix6<T> Factor<T>::mobility(int i, SixBySix<T>* omega) const {
+// Ω_i = S D⁻¹Sᵀ + (I − S Wᵀ) Ω_π (I − W Sᵀ); of ν_i, in the basis of D:  D⁻¹ + Wᵀ Ω_π W, its columns
+template <class T> void Factor<T>::mobility(int i, SixBySix<T>* omega, Six<T> (&V)[6]) const {
   const int first = plan_->first_column[i], n = plan_->first_column[i + 1] - first, p = plan_->parent[i];
   const Six<T>* const w = w_.data() + plan_->first_w[i];
   omega[i] = p < 0 ? SixBySix<T>::zero() : omega[p];
-  Matrix6<T> V = Matrix6<T>::Zero();
   for (int c = 0; c < n; ++c) {
-    V(c, c) = d_inverse_[first + c];
-    if (p < 0) continue;
+    V[c] = scaled(unit_vector<T>(c), d_inverse_[first + c]);
+    if (p < 0) {
+      add_outer(omega[i], s_[first + c], scaled(s_[first + c], d_inverse_[first + c]));
+      continue;
+    }
     const Six<T> pushed = multiply(omega[p], w[c]);
     subtract_outer(omega[i], s_[first + c], pushed);
     subtract_outer(omega[i], pushed, s_[first + c]);
-    for (int e = 0; e < n; ++e) V(e, c) += dot(w[e], pushed);
+    for (int e = 0; e < n; ++e) V[c].v[e] += dot(w[e], pushed);
   }
-  for (int c = 0; c < n; ++c)
-    for (int e = 0; e < n; ++e) {
-      Six<T> scaled = s_[first + c];
-      scale(scaled, V(e, c));
-      add_outer(omega[i], s_[first + e], scaled);
-    }
-  return V;
+  for (int c = 0; c < n && p >= 0; ++c) {
+    Six<T> moved = Six<T>::zero();
+    for (int e = 0; e < n; ++e) add_scaled(moved, s_[first + e], T(V[c][e]));
+    add_outer(omega[i], s_[first + c], moved);
+  }
 }
 
 // From the roots outwards.
 template <class T> void Factor<T>::row_mobility(T* d, SixBySix<T>* omega) const {
   for (int i = plan_->steps; i-- > 0;) {
     const int n = plan_->first_column[i + 1] - plan_->first_column[i];
-    const Matrix6<T> V = mobility(i, omega);
+    Six<T> V[6];
+    mobility(i, omega, V);
     const int step = i - plan_->first_active;
     for (int j = step < 0 ? 0 : first_joint_rows_[step]; step >= 0 && j < first_joint_rows_[step + 1]; ++j)
       for (Index r = 0; r < joint_rows_[j].rows; ++r) {
         const T* const k = joint_k_.data() + joint_rows_[j].first + r * n;
         T& of_row = d[joint_rows_[j].row + r] = T(0);
         for (int c = 0; c < n; ++c)
-          for (int e = 0; e < n; ++e) of_row += k[c] * V(c, e) * k[e];
+          for (int e = 0; e < n; ++e) of_row += k[c] * V[c][e] * k[e];
       }
   }
   rows_->mobility(omega + plan_->first_active, d);
 }
 
-// E V Eᵀ of every joint
+// The diagonal of E V Eᵀ of every joint.
 template <class T> void Factor<T>::joint_mobility(T* d, SixBySix<T>* omega) const {
   for (int i = plan_->steps; i-- > 0;) {
     const int n = plan_->first_column[i + 1] - plan_->first_column[i];
-    const Matrix6<T> V = mobility(i, omega);
+    Six<T> V[6];
+    mobility(i, omega, V);
     T* const of_joint = d + structure_->first_dof[plan_->body[i]];
-    if (n == 1) of_joint[0] = V(0, 0);
+    if (n == 1) of_joint[0] = V[0][0];
     if (n <= 1) continue;
     const Six<T>* const E = e_.data() + vector_of_[i];
-    for (int j = 0; j < n; ++j) {
-      of_joint[j] = T(0);
-      for (int c = 0; c < n; ++c)
-        for (int e = 0; e < n; ++e) of_joint[j] += E[c][j] * V(c, e) * E[e][j];
+    Six<T> sum = Six<T>::zero();
+    for (int c = 0; c < n; ++c) {
+      Six<T> column = Six<T>::zero();
+      for (int e = 0; e < n; ++e) add_scaled(column, E[e], T(V[c][e]));
+      add(sum, product(E[c], column));
     }
+    for (int j = 0; j < n; ++j) of_joint[j] = sum[j];
   }
 }
 
 #define DELASSUS_INSTANTIATE(T) template void Factor<T>::solve<T>(const T*, const T*, T*, T*, T*) const; template T Factor<T>::energy<T>(const T*, T*) const; \
   template void Factor<T>::project<T>(const T*, T*, T*) const; template void Factor<T>::row_mobility(T*, SixBySix<T>*) const; \
-  template void Factor<T>::joint_mobility(T*, SixBySix<T>*) const; template void Factor<T>::half(const T*, T*, T*) const;
+  template void Factor<T>::joint_mobility(T*, SixBySix<T>*) const; template void Factor<T>::half<T>(const T*, T*, T*) const;
 DELASSUS_FOR_EACH_SCALAR(DELASSUS_INSTANTIATE)
 #ifdef DELASSUS_EXACT
 DELASSUS_INSTANTIATE(Stochastic)
@@ -251,6 +255,8 @@ template void Factor<Stochastic>::gather(const Six<Stochastic>*, const Stochasti
 template void Factor<double>::project<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
 template void Factor<double>::solve<Lanes8>(const Lanes8*, const Lanes8*, Lanes8*, Lanes8*, Lanes8*) const;
 template Lanes8 Factor<double>::energy<Lanes8>(const Lanes8*, Lanes8*) const;
+template void Factor<double>::half<Lanes8>(const Lanes8*, Lanes8*, Lanes8*) const;
+template void Factor<float>::half<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
 template void Factor<float>::project<Lanes8f>(const Lanes8f*, Lanes8f*, Lanes8f*) const;
 template void Factor<float>::solve<Lanes8f>(const Lanes8f*, const Lanes8f*, Lanes8f*, Lanes8f*, Lanes8f*) const;
 #endif

@@ -58,4 +58,18 @@ template <class T> [[nodiscard]] inline T dot(const T* x, const T* y, Index n) {
   }
 }
 
+/// Σ x_c y_c z_c.
+template <class T> [[nodiscard]] inline T dot(const T* x, const T* y, const T* z, Index n) {
+  if constexpr (std::is_same_v<T, double>) {
+    const Lanes8 *const a = reinterpret_cast<const Lanes8*>(x), *const b = reinterpret_cast<const Lanes8*>(y), *const d = reinterpret_cast<const Lanes8*>(z);
+    Lanes8 sum{};
+    for (Index c = 0; 8 * c < n; ++c) sum += a[c] * b[c] * d[c];
+    return total(sum);
+  } else {
+    T sum{};
+    for (Index c = 0; c < n; ++c) sum += x[c] * y[c] * z[c];
+    return sum;
+  }
+}
+
 }  // namespace delassus

@@ -1,4 +1,5 @@
 // Position-level errors φ(q) of the constraints between two frames.
+#include <algorithm>
 #include <cmath>
 
 #include "algorithms/kit/counted.h"
@@ -42,27 +43,22 @@ template <class T> void axis_error(const Matrix3<T>& a, const Matrix3<T>& b, T* 
   out[1] = -scale * z[0];
 }
 
-template <class T> void pair_error(const Constraint& c, const End<T>& a, const End<T>& b, VectorX<T>& e) {
+template <class T> void put(const Vector3<T>& from, Index n, T* to) {
+  for (Index k = 0; k < n; ++k) to[k] = from[k];
+}
+
+template <class T> void pair_error(const Constraint& c, const End<T>& a, const End<T>& b, T* e) {
   using std::sqrt;
   const Vector3<T> d = offset(a, b);
   const Vector3<T> along = a.rotation.transpose() * d;
   switch (c.kind) {
-    case Kind::point: e = along; return;
-    case Kind::weld: e << rotation_error(a.rotation, b.rotation), along; return;
-    case Kind::hinge:
-      axis_error(a.rotation, b.rotation, e.data());
-      e.template tail<3>() = along;
-      return;
-    case Kind::universal: e << a.rotation.col(2).dot(b.rotation.col(0)), along; return;
-    case Kind::cylindrical:
-      axis_error(a.rotation, b.rotation, e.data());
-      e.template tail<2>() = along.template head<2>();
-      return;
-    case Kind::prismatic: e << rotation_error(a.rotation, b.rotation), along.template head<2>(); return;
-    case Kind::planar:
-      axis_error(a.rotation, b.rotation, e.data());
-      e[2] = along[2];
-      return;
+    case Kind::point: put(along, 3, e); return;
+    case Kind::weld: put(rotation_error(a.rotation, b.rotation), 3, e), put(along, 3, e + 3); return;
+    case Kind::hinge: axis_error(a.rotation, b.rotation, e), put(along, 3, e + 2); return;
+    case Kind::universal: e[0] = a.rotation.col(2).dot(b.rotation.col(0)), put(along, 3, e + 1); return;
+    case Kind::cylindrical: axis_error(a.rotation, b.rotation, e), put(along, 2, e + 2); return;
+    case Kind::prismatic: put(rotation_error(a.rotation, b.rotation), 3, e), put(along, 2, e + 3); return;
+    case Kind::planar: axis_error(a.rotation, b.rotation, e), e[2] = along[2]; return;
     case Kind::distance: e[0] = T(sqrt(T(d.dot(d)))) - T(c.length); return;
     case Kind::contact: e[0] = along[2]; return;
     default: return;
@@ -71,15 +67,25 @@ template <class T> void pair_error(const Constraint& c, const End<T>& a, const E
 
 }  // namespace
 
-template <class T> VectorX<T> closure_error(const Model& model, const Constraint& c, const Poses<T>& at) {
-  VectorX<T> e = VectorX<T>::Constant(row_count(model, c), T(0));
+template <class T> Index closure_error(const Model& model, const Constraint& c, const Poses<T>& at, T* e) {
+  const Index rows = row_count(model, c);
+  std::fill_n(e, rows, T(0));
   if (has_closure(c.kind)) pair_error(c, end_of(at, c.a), end_of(at, c.b), e);
+  return rows;
+}
+
+template <class T> VectorX<T> closure_error(const Model& model, const Constraint& c, const Poses<T>& at) {
+  VectorX<T> e(row_count(model, c));
+  closure_error(model, c, at, e.data());
   return e;
 }
 
-template VectorX<double> closure_error<double>(const Model&, const Constraint&, const Poses<double>&);
-template VectorX<float> closure_error<float>(const Model&, const Constraint&, const Poses<float>&);
-template VectorX<Quad> closure_error<Quad>(const Model&, const Constraint&, const Poses<Quad>&);
-template VectorX<Counted> closure_error<Counted>(const Model&, const Constraint&, const Poses<Counted>&);
+#define DELASSUS_INSTANTIATE(T)                                                             \
+  template VectorX<T> closure_error<T>(const Model&, const Constraint&, const Poses<T>&);   \
+  template Index closure_error<T>(const Model&, const Constraint&, const Poses<T>&, T*);
+DELASSUS_INSTANTIATE(double)
+DELASSUS_INSTANTIATE(float)
+DELASSUS_INSTANTIATE(Quad)
+DELASSUS_INSTANTIATE(Counted)
 
 }  // namespace delassus

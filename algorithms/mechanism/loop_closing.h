@@ -21,6 +21,8 @@ namespace delassus {
 /// rows times ν.
 template <class T>
 [[nodiscard]] VectorX<T> closure_error(const Model& model, const Constraint& c, const Poses<T>& poses);
+/// The same into `e`, without allocating; returns the number of its entries.
+template <class T> Index closure_error(const Model& model, const Constraint& c, const Poses<T>& poses, T* e);
 
 /// Gap accepted when nobody says otherwise: 1e-4 rad, and as much of the lever arm of the closure. What files round
 /// (angles to 1e-4, lengths to 0.1 mm) adds up to less; a pose that is simply wrong leaves more.

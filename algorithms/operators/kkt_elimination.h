@@ -10,14 +10,14 @@
 //                              range of A is `inconsistent`: what the others leave of a row left out, a_r − J_r ν with the
 //                              refined ν, exceeds 30 eps · m (|a_r| + |A_r·||λ| + √(B_r λᵀA₀λ)), B_r the size of
 //                              hard_rows.h: as far as a row that was called dependent can be off, and the rounding of J_r ν,
-//                              |J_rj||ν_j| ≤ b_rj √(M⁻¹)_jj ‖ν‖_M; with r₁, √(B_r r₁ᵀM⁻¹r₁) more. Judged at full accuracy, whatever was wanted.
+//                              |J_rj||ν_j| ≤ b_rj √(M⁻¹)_jj ‖ν‖_M; with r₁, √(B_r r₁ᵀM⁻¹r₁) more. Judged at full accuracy, whatever was wanted; not at all by Accuracy::fastest().
 //            dense_refined     reports lost_pivot.
 // Bound    on r₂ᵀA⁻¹r₂ of the rows not left out, where a row is hard: L D Lᵀ = (Y + E)(Y + E)ᵀ, A = Y Yᵀ, |E_r| ≤ (k + 30) eps s_r,
 //          s_r² = B_r + R⁻¹_rr, k rows. The singular values of Y + E, its rows divided by s_r, are at least 1/√τ with the trace
 //          τ = Σ s_r² ((L D Lᵀ)⁻¹)_rr; those of Y at least t times that, t = 1 − √k (k + 30) eps √τ, and
 //          r₂ᵀA⁻¹r₂ ≤ ‖D^(−½) L⁻¹ r₂‖² / t². None when t < ½. Rigorous up to the rounding of M's factor, for which the 30 stands.
-// Cost     update: m sweeps of the factor of M, m³/3 or that of hard_rows.h and m³/3 for τ; solve: per step 2 m² + 4 sweeps + a residual.
-// Workspace  refinement's + n + 2 m.
+// Cost     update: m sweeps of the factor of M and m³/3, or that of hard_rows.h and m³/3 for τ; solve: per step 2 m² + 4 sweeps + a residual.
+// Workspace  refinement's + n + 2 m. Memory 4 m² and hard_rows.h's.
 // Error    refined.
 // Source   paper, section II; refinement.h.
 #pragma once
@@ -33,6 +33,8 @@ template <class T, Dependent policy> class KktEliminationWith : public Refined<T
  public:
   static constexpr int max_steps = 20;  // the last rung: it takes what it needs
   [[nodiscard]] const std::vector<Index>& dependent_rows() const override { return dependent_; }
+  /// What update was given; `to` has the structure and the sizes.
+  void numbers(Problem<T>& to) const { refinement_.numbers(to); }
   /// The elimination alone: M d_nu − Jᵀd_lambda = r1, J d_nu + R⁻¹d_lambda = r2 on the rows not left out. Shapes n, m, n, m;
   /// `work` as for solve.
   void solve_kkt(const T* r1, const T* r2, T* d_nu, T* d_lambda, T* work) const;
@@ -55,13 +57,18 @@ template <class T, Dependent policy> class KktEliminationWith : public Refined<T
   void solve_multipliers(const T* right, T* lambda, T* work) const;
   [[nodiscard]] Report check_dependent(const typename Refinement<T>::Asked& asked, const T* f, const T* nu, T* work) const;
   [[nodiscard]] double trust_in_factor();
+  void forward(const T* right, T* x) const;
   [[nodiscard]] std::optional<T> bound_at_rows(const T* r2, T* work) const;
 
   Refinement<T> refinement_;
   BlockDiagonal<T> damping_;      // R⁻¹
   HardRows<T> hard_rows_;
-  MatrixX<T> A0_, A_, factor_;    // m × m
-  std::vector<T> unit_, column_;
+  using V = std::conditional_t<has_lanes<T>, Lanes<T>, T>;
+  static constexpr Index width = columns_in<V>;
+  MatrixX<T> A0_, factor_;        // m × m; where a row is hard A0_ has the columns of dependent rows and no others
+  MatrixX<T> lower_, upper_;      // padded m × m: L and Lᵀ of A without their diagonal
+  VectorX<T> inverse_pivots_, unit_, column_;  // 1/D; all zero up to their padded ends
+  bool formed_ = false, any_hard_ = false;
   using Kind = typename HardRows<T>::Kind;
   std::vector<Kind> kinds_;       // per row: R⁻¹_rr = 0, ∞ or neither
   std::vector<Index> order_, dependent_;

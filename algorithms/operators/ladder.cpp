@@ -27,6 +27,7 @@ template <class T> void Ladder<T>::do_analyze() {
   of_soft_rows_.clear();
   of_hard_rows_.clear();
   dense_ = nullptr;
+  last_ = nullptr;
   hard_ = false;
   of_soft_rows_.reserve(4);
   of_hard_rows_.reserve(4);
@@ -39,10 +40,9 @@ template <class T> void Ladder<T>::do_analyze() {
     if (row.decides_rank) dense_ = &rung;
   }
   if (dense_ != nullptr && s.rows <= first_dense_rows) std::rotate(of_hard_rows_.begin(), of_hard_rows_.end() - 1, of_hard_rows_.end());
-  rungs_.front().op = rungs_.front().row->template make<T>();
-  rungs_.front().op->analyze(this->structure());
-  first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
   problem_ = {};
+  make(rungs_.front());
+  first_ = &dynamic_cast<const LcabaRefined<T>&>(*rungs_.front().op);
   plain_.diagonal.assign(static_cast<std::size_t>(s.rows), T(0));
   blocks_ = {};
 }
@@ -85,20 +85,32 @@ template <class T> bool Ladder<T>::in_wide(Index row) const {
                      [row](const auto& b) { return row >= b.row && row < b.row + b.R_inverse.rows(); });
 }
 
-template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) {
-  return taken(damping, [&](Operator<T>& first) { return first.update(problem, *damping_); });
+template <class T> Report Ladder<T>::do_update(const Problem<T>& problem, const Damping<T>& damping) { return taken(problem, damping, false); }
+
+template <class T> Report Ladder<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) { return taken(problem, damping, true); }
+
+template <class T> bool Ladder<T>::surely_hard() const {
+  if (dense_ == nullptr || of_hard_rows_.front() != dense_) return false;
+  return damping_->blocks.empty() && std::find(damping_->diagonal.begin(), damping_->diagonal.end(), T(0)) != damping_->diagonal.end();
 }
 
-template <class T> Report Ladder<T>::do_update_rows(const Problem<T>& problem, const Damping<T>& damping) {
-  return taken(damping, [&](Operator<T>& first) { return first.update_rows(problem, *damping_); });
+template <class T> void Ladder<T>::make(Rung& rung) const {
+  rung.op = rung.row->template make<T>();
+  rung.op->analyze(this->structure());
+  if (&rung != &rungs_.front() && problem_.structure == nullptr) problem_ = Problem<T>(this->structure());
+  if (&rung == dense_) last_ = &dynamic_cast<const KktElimination<T>&>(*rung.op);
 }
 
-template <class T> template <class Update> Report Ladder<T>::taken(const Damping<T>& damping, const Update& update) {
+template <class T> Report Ladder<T>::taken(const Problem<T>& problem, const Damping<T>& damping, bool same_motions) {
   keep(damping);
-  for (Rung& rung : rungs_) rung.state = State::stale;
+  Rung& rung = surely_hard() ? *dense_ : rungs_.front();
+  const bool rows = same_motions && rung.state != State::stale;
+  for (Rung& other : rungs_) other.state = State::stale;
   problem_is_current_ = false;
-  rungs_.front().updated = update(*rungs_.front().op);
-  rungs_.front().state = State::current;
+  if (rung.op == nullptr) make(rung);
+  rung.updated = rows ? rung.op->update_rows(problem, *damping_) : rung.op->update(problem, *damping_);
+  rung.state = State::current;
+  holder_ = &rung;
   return first_usable();
 }
 
@@ -115,8 +127,11 @@ template <class T> Report Ladder<T>::do_update_damping(const Damping<T>& damping
 
 // The first rung that can be used, factored; what the first says when none can.
 template <class T> Report Ladder<T>::first_usable() {
-  static_cast<void>(prepare(rungs_.front()));  // it keeps the numbers
-  hard_ = !first_->invertible().ok();
+  hard_ = surely_hard();
+  if (!hard_) {
+    static_cast<void>(prepare(rungs_.front()));
+    hard_ = !first_->invertible().ok();
+  }
   Report first;
   for (Rung* const rung : order()) {
     const Report report = prepare(*rung);
@@ -130,12 +145,8 @@ template <class T> Report Ladder<T>::prepare(Rung& rung) const {
   if (rung.state.load(std::memory_order_acquire) == State::current) return rung.updated;
   const std::lock_guard lock(preparing_);
   if (rung.state == State::stale) {
-    if (rung.op == nullptr) {
-      rung.op = rung.row->template make<T>();
-      rung.op->analyze(this->structure());
-    }
-    if (problem_.structure == nullptr) problem_ = Problem<T>(this->structure());
-    if (!std::exchange(problem_is_current_, true)) first_->numbers(problem_);
+    if (rung.op == nullptr) make(rung);
+    if (!std::exchange(problem_is_current_, true)) holder_ == dense_ ? last_->numbers(problem_) : first_->numbers(problem_);
     rung.updated = rung.op->update(problem_, *damping_);
   }
   if (rung.state == State::stale_damping) rung.updated = rung.op->update_damping(*damping_);

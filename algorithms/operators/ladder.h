@@ -8,7 +8,8 @@
 //            a row is hard (R⁻¹ = 0)  kkt_elimination   up to first_dense_rows rows: a bound, and the dependent rows by name
 //                                     proximal          no bound: judged by the last correction
 //                                     kkt_elimination   up to max_dense_rows rows
-// How      update factors the first rung only, the numbers are kept by lcaba_refined; another rung is made, analysed and factored
+// How      update factors the first rung only, which keeps the numbers: lcaba_refined, or where a number on the diagonal of R⁻¹ is
+//          zero kkt_elimination, if that comes first there; another rung is made, analysed and factored
 //          when a solve first climbs to it, or an update finds that no earlier one can be used (a lock lets one thread do it, the
 //          others wait), and brings its own workspace. Report::rung names who answered, rungs_tried and iterations what it took;
 //          Accuracy::steps counts over all rungs.
@@ -25,6 +26,7 @@
 #include <mutex>
 
 #include "algorithms/operators/column_by_column.h"
+#include "algorithms/operators/kkt_elimination.h"
 #include "algorithms/operators/lcaba_refined.h"
 #include "algorithms/operators/operators.h"
 
@@ -61,8 +63,11 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   };
   class Lent;  // a workspace of a rung, given back at the end
   void keep(const Damping<T>& damping);
-  /// The first rung takes the numbers, the others when they are needed.
-  template <class Update> Report taken(const Damping<T>& damping, const Update& update);
+  /// One rung takes the numbers, the others when they are needed.
+  Report taken(const Problem<T>& problem, const Damping<T>& damping, bool same_motions);
+  /// Without a look at blocks.
+  [[nodiscard]] bool surely_hard() const;
+  void make(Rung& rung) const;
   void make_blocks();
   [[nodiscard]] bool in_wide(Index row) const;
   /// The best report of the rungs, asked one after the other: ask(rung, accuracy, is_first) solves, keep() takes its answer.
@@ -78,8 +83,10 @@ template <class T> class Ladder : public ColumnByColumn<T> {
   Rung* dense_ = nullptr;              // kkt_elimination, or none
   bool hard_ = false;                  // R⁻¹ has no inverse
   const LcabaRefined<T>* first_ = nullptr;
+  mutable const KktElimination<T>* last_ = nullptr;  // the operator of dense_, when it is made
+  const Rung* holder_ = nullptr;       // has the numbers of the last update
   mutable std::mutex preparing_, lending_;
-  mutable Problem<T> problem_;         // what the first rung was given; current when another was factored since
+  mutable Problem<T> problem_;         // what the holder was given; current when another was factored since
   mutable bool problem_is_current_ = false;
   Damping<T> plain_, blocks_;          // what was given: without blocks, or with one block per constraint of several rows
   const Damping<T>* damping_ = nullptr;

@@ -1,6 +1,8 @@
 // What operators share that refine a pair (ν, λ): solve_pair answers solve, which asks for λ alone, and solve_kkt.
 #pragma once
 
+#include <algorithm>
+
 #include "algorithms/factors/refinement.h"
 #include "algorithms/operators/column_by_column.h"
 
@@ -35,8 +37,8 @@ template <class T> class Refined : public ColumnByColumn<T> {
 
  private:
   Report do_solve_kkt(const T* r1, const T* r2, T* nu, T* lambda, Accuracy wanted, Start start, T* workspace) const final {
-    const bool given = start == Start::given;
-    return solve_pair({r1, r2, given ? nu : nullptr, given ? lambda : nullptr}, lambda, nu, wanted, workspace);
+    const bool given = start == Start::given, none = std::all_of(r1, r1 + this->structure()->dofs(), [](const T& x) { return x == T(0); });
+    return solve_pair({none ? nullptr : r1, r2, given ? nu : nullptr, given ? lambda : nullptr}, lambda, nu, wanted, workspace);
   }
 };
 

@@ -61,11 +61,11 @@ TEST(Ladder, PaysOnlyForWhatIsAsked) {
 }
 
 /// Operations of update and one solve.
-std::int64_t operations(std::string_view op_name, Accuracy wanted) {
-  const generators::Built built = generators::build(generators::find_family("humanoid").make(12, 1));
+std::int64_t operations(std::string_view op_name, Accuracy wanted, std::string_view family = "humanoid", double R_inverse = 1e-4) {
+  const generators::Built built = generators::build(generators::find_family(family).make(12, 1));
   const Index m = built.problem.structure->rows;
   const Problem<Counted> problem = built.problem.cast<Counted>();
-  const Damping<Counted> damping = Damping<double>::uniform(m, 1e-4).cast<Counted>();
+  const Damping<Counted> damping = Damping<double>::uniform(m, R_inverse).cast<Counted>();
   const auto op = find_operator(op_name).make<Counted>();
   op->analyze(problem.structure);
   Workspace<Counted> w(op->workspace());
@@ -83,6 +83,27 @@ TEST(Ladder, WhatIsNotAskedIsNotComputed) {
   EXPECT_LT(10 * fastest, 11 * lcaba) << "no factor of M, no residual";
   EXPECT_LT(fastest, loose);
   EXPECT_LT(loose, full);
+}
+
+// Hard rows are answered by kkt_elimination: nothing is factored, and no number is taken, for who has no answer to them.
+TEST(Ladder, HardRowsPayForTheirRungAlone) {
+  for (const Accuracy wanted : {Accuracy::fastest(), Accuracy{1e-3}})
+    EXPECT_EQ(operations("ladder", wanted, "chain", 0), operations("kkt_elimination", wanted, "chain", 0)) << wanted.error;
+  EXPECT_LT(operations("ladder", Accuracy::fastest(), "chain", 0), operations("ladder", {1e-3}, "chain", 0)) << "no residual";
+}
+
+// Who kept the numbers of hard rows hands them on when the damping softens them, and the other way round.
+TEST(Ladder, NumbersGoFromRungToRung) {
+  Solver s("chain", 0), soft("chain", 1e-4);
+  ASSERT_TRUE(s.op->update_damping(soft.built.damping).ok());
+  EXPECT_EQ(s.solve(Accuracy::full()).rung, "lcaba_refined");
+  ASSERT_TRUE(soft.solve(Accuracy::full()).ok());
+  EXPECT_EQ(s.f, soft.f);
+  Solver hard("chain", 0);
+  ASSERT_TRUE(soft.op->update_damping(hard.built.damping).ok());
+  EXPECT_EQ(soft.solve(Accuracy::full()).rung, "kkt_elimination");
+  ASSERT_TRUE(hard.solve(Accuracy::full()).ok());
+  EXPECT_EQ(soft.f, hard.f);
 }
 
 TEST(Ladder, WhatNobodyClimbsToHoldsNoMemory) {
