@@ -4,19 +4,10 @@ dynamics_test.py BUILD_DIR
 """
 import json
 import pathlib
-import subprocess
-import sys
 import tempfile
 
-EPS = 2.0**-53
-
-delassus = pathlib.Path(sys.argv[1]) / "cli/delassus"
-failures = []
-
-
-def expect(what, holds):
-    if not holds:
-        failures.append(what)
+import program
+from program import EPS, end, expect
 
 
 def near(x, y):
@@ -24,7 +15,7 @@ def near(x, y):
 
 
 def run(*command):
-    return subprocess.run([str(word) for word in (delassus, "dynamics", *command)], capture_output=True, text=True, timeout=120)
+    return program.run("dynamics", *command)
 
 
 # 2 kg at 0.5 m along x on an axis along y, 0.1 kg m² about its centre: M = 0.6 kg m², weight −10 N m at g = 10 m/s².
@@ -70,6 +61,4 @@ with tempfile.TemporaryDirectory() as name:
     wrong = run(folder / "free.yaml", "--op", "laddr")
     expect("wrong operator", wrong.returncode == 2 and "did you mean ladder" in wrong.stderr)
 
-for failure in failures:
-    print("FAILED:", failure)
-sys.exit(1 if failures else 0)
+end()

@@ -6,23 +6,18 @@ import json
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 
-delassus = pathlib.Path(sys.argv[1]) / "cli/delassus"
-failures = []
+import program
+from program import delassus, end, expect, failures
+
 FAMILY = ["--family", "chain", "--n", "4"]
 DEFECT = ["--defect", "one_part_in_1e10"]
 
 
-def expect(what, holds):
-    if not holds:
-        failures.append(what)
-
-
 def run(*command, code=0):
-    done = subprocess.run([str(word) for word in (delassus, *command)], capture_output=True, text=True, timeout=240)
+    done = program.run(*command)
     expect(f"{' '.join(map(str, command))}: exit code {done.returncode}, not {code}: {done.stdout[-300:]}{done.stderr[-300:]}", done.returncode == code)
     return done.stdout
 
@@ -282,7 +277,4 @@ with tempfile.TemporaryDirectory() as name:
     run("report", "--out", folder / "file" / "below", code=2)
     expect("report --out BAD at once", time.monotonic() - start < 10)
 
-for failure in failures:
-    print("FAILED", failure)
-print(f"{len(failures)} failed")
-sys.exit(1 if failures else 0)
+end()
