@@ -43,6 +43,7 @@ th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}
 .bars-key{font-size:.8rem;color:var(--soft)}.bars-key i{display:inline-block;width:.8rem;height:.7rem;margin:0 .25rem 0 .7rem}
 .matrix th{white-space:normal;min-width:3.4rem}
 .matrix th:first-child{white-space:nowrap}
+.tables .upright th,.tables .upright td{padding:.18rem .2rem}
 .upright thead th+th{writing-mode:vertical-rl;transform:rotate(180deg);min-width:0;white-space:nowrap;text-align:left;vertical-align:middle}
 caption{text-align:left;font-weight:600;padding:.2rem .55rem .3rem 0;font-size:.92rem}
 .good{color:var(--good)}

@@ -37,7 +37,7 @@ std::string law_cell(const Worst& w) {
   if (w.checked == 0) return "<td class=\"soft\" title=\"" + escape(w.skipped) + "\">–</td>";
   return std::string("<td class=\"") + (w.passed ? "good" : "bad") + "\" title=\"" +
          escape(std::to_string(w.checked) + " scenes; worst: " + w.scene) + "\">" +
-         (!w.passed ? "✗ " + escape(ratio_text(w.ratio)) : w.ratio > 0 && w.ratio < 0.01 ? "&lt;.01" : format("%.2g", w.ratio)) + "</td>";
+         (!w.passed ? "✗ " + escape(ratio_text(w.ratio)) : w.ratio > 0 && w.ratio < 0.01 ? "&lt;.01" : w.ratio > 0 && w.ratio < 0.995 ? format("%.2f", w.ratio).substr(1) : format("%.2g", w.ratio)) + "</td>";
 }
 
 std::string failures(const Results& r) {
