@@ -1,6 +1,7 @@
 #include "bench/peers/peer_table.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "algorithms/mechanism/mechanism.h"
 #include "bench/accuracy/accuracy_truth.h"
@@ -88,29 +89,69 @@ struct Expected {
   }
 };
 
+struct Turn {
+  Step step;
+  bool other;  ///< damping
+};
+/// What is compared, in this order.
+template <class Row> std::vector<Turn> turns(const Row& row) {
+  std::vector<Turn> all;
+  if (!row.product.empty()) all = {{Step::first_product, false}, {Step::product, false}};
+  if (!row.solve.empty())
+    for (const Turn t : {Turn{Step::first_solve, false}, {Step::solve, false}, {Step::new_damping, true}, {Step::solve, true}, {Step::new_damping, false}, {Step::first_solve, false}}) all.push_back(t);
+  return all;
+}
+
+/// An answer that is not near enough.
+struct Wrong {
+  std::size_t turns = 0;  ///< up to it; none: it is M
+  Vector answer;
+  double error = 0;
+};
+
 /// Fills the errors; the first that is too large ends it.
-void compare(Peer& peer, const Expected& e, PeerEntry& entry) {
+std::optional<Wrong> compare(Peer& peer, const Expected& e, PeerEntry& entry) {
   const auto agrees = [&](const char* what, double error, double most, double& worst) {
     worst = std::isnan(worst) ? error : std::max(worst, error);
     if (!(error <= most)) entry.disagrees = format("%s: relative error %.1e, above %.1e", what, error, most);
     return entry.disagrees.empty();
   };
   peer.take(Step::kinematics);
-  if (!agrees("M", e.of_M(peer.M()), M_limit, entry.M_error)) return;
-  if (!entry.product.empty())
-    for (const Step s : {Step::first_product, Step::product}) {
-      peer.take(s);
-      if (!agrees(name(s), e.of_product(peer.answer()), e.product_limit, entry.product_error)) return;
-    }
-  if (entry.solve.empty()) return;
-  struct Turn {
-    Step step;
-    bool other;  ///< damping
-  };
-  for (const Turn t : {Turn{Step::first_solve, false}, {Step::solve, false}, {Step::new_damping, true}, {Step::solve, true}, {Step::new_damping, false}, {Step::first_solve, false}}) {
-    peer.take(t.step);
-    if (!agrees(name(t.step), e.of_solution(peer.answer(), t.other ? e.other_solution : e.solution), e.force_limit, entry.force_error)) return;
+  if (!agrees("M", e.of_M(peer.M()), M_limit, entry.M_error)) return Wrong{};
+  std::size_t taken = 0;
+  for (const Turn t : turns(entry)) {
+    peer.take(t.step), ++taken;
+    const Vector answer = peer.answer();
+    const double error = is_product(t.step) ? e.of_product(answer) : e.of_solution(answer, t.other ? e.other_solution : e.solution);
+    if (!(is_product(t.step) ? agrees(name(t.step), error, e.product_limit, entry.product_error) : agrees(name(t.step), error, e.force_limit, entry.force_error))) return Wrong{taken, answer, error};
   }
+  return std::nullopt;
+}
+
+/// At every q the next number: who solves our problem answers nearly as before, however far another problem is; a formula that loses digits
+/// moves as far as it is off.
+Scene next_to(Scene scene) {
+  for (Index i = 0; i < scene.q.size(); ++i) scene.q[i] = std::nextafter(scene.q[i], INFINITY);
+  return scene;
+}
+bool is_rounding(const Vector& answer, const Vector& next, double error) {
+  return std::isfinite(error) && (answer - next).lpNorm<Eigen::Infinity>() > error / 30 * answer.lpNorm<Eigen::Infinity>();
+}
+bool loses_digits(const PeerRow& row, const Scene& scene, const Vector& x, const Wrong& wrong) {
+  if (wrong.turns == 0 || !std::isfinite(wrong.error)) return false;
+  const Scene next = next_to(scene);
+  const std::unique_ptr<Peer> peer = row.make(next, next.damping, x);
+  peer->take(Step::kinematics);
+  const std::vector<Turn> all = turns(row);
+  for (std::size_t k = 0; k < wrong.turns; ++k) peer->take(all[k].step);
+  return is_rounding(wrong.answer, peer->answer(), wrong.error);
+}
+/// The same of ours.
+bool loses_digits(const OperatorRow& op, const Scene& scene, const MatrixX<double>& x, const Asked& asked, const PeerEntry& e, double product_limit) {
+  const Problem<double> problem = problem_of(next_to(scene));
+  const Asked next(op, problem, scene.damping, x);
+  const bool product = e.product_error > product_limit;
+  return is_rounding(product ? asked.product() : asked.solution(), product ? next.product() : next.solution(), product ? e.product_error : e.force_error);
 }
 
 PeerEntry entry_of(const PeerRow& row) {
@@ -169,7 +210,7 @@ double PeerScene::ratio(const PeerEntry& peer, Step step, const std::string& our
 
 int PeerTable::disagreements() const {
   int n = 0;
-  for (const PeerScene& s : scenes) n += static_cast<int>(std::count_if(s.entries.begin(), s.entries.end(), [](const PeerEntry& e) { return !e.disagrees.empty(); }));
+  for (const PeerScene& s : scenes) n += static_cast<int>(std::count_if(s.entries.begin(), s.entries.end(), [](const PeerEntry& e) { return !e.disagrees.empty() && !e.loses_digits; }));
   return n;
 }
 
@@ -202,8 +243,10 @@ PeerScene measure_peers(const Scene& scene, const std::vector<PeerRow>& rows, do
       continue;
     }
     Peer& peer = *peers.back();
-    compare(peer, expected, e);
-    if (!e.disagrees.empty()) continue;
+    if (const std::optional<Wrong> wrong = compare(peer, expected, e)) {
+      e.loses_digits = loses_digits(row, scene, expected.x, *wrong);
+      continue;
+    }
     if (!e.from_q) run.add([&peer] { peer.take(Step::kinematics); }, &e.time[at(Step::kinematics)]);
     for (const Step s : own_steps)
       if (!(is_product(s) ? e.product : e.solve).empty()) run.add([&peer, s] { peer.take(s); }, &e.time[at(s)]);
@@ -225,6 +268,7 @@ PeerScene measure_peers(const Scene& scene, const std::vector<PeerRow>& rows, do
     if (a.why_not(Use::solve).empty()) e.force_error = expected.of_solution(a.solution(), expected.solution);
     if (e.product_error > expected.product_limit || e.force_error > expected.force_limit) {
       e.disagrees = format("relative errors %.1e of a, %.1e of λ", e.product_error, e.force_error);
+      e.loses_digits = loses_digits(*op, scene, x, a, e, expected.product_limit);
       continue;
     }
     for (const Step s : own_steps) {

@@ -25,6 +25,7 @@ struct PeerEntry {
   bool from_q = false;
   std::string cannot;      ///< why it cannot express the scene; empty: it can
   std::string disagrees;   ///< what differs and by how much; then there are no times. Empty: nothing does
+  bool loses_digits = false;  ///< then: it solves our problem, but its answer moves as far as it is off when q moves by its last bit
   double M_error = NAN, product_error = NAN, force_error = NAN;  ///< |δM_ij|/√(M_ii M_jj), max|δa|/max|a|, max|δλ|/max|λ|: the largest of all steps
   std::array<Spread, step_count> time;                           ///< [µs]; not measured: it has no such step
 
@@ -48,7 +49,7 @@ struct PeerScene {
 struct PeerTable : Beside {
   std::vector<PeerScene> scenes;
 
-  [[nodiscard]] int disagreements() const;
+  [[nodiscard]] int disagreements() const;  ///< those that only lose digits left out
 };
 
 /// @throws ModelError where `rows` is empty: what can be installed.

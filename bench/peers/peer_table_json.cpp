@@ -9,7 +9,7 @@ namespace {
 
 json written(const PeerEntry& e) {
   json j = {{"name", e.name}, {"program", e.program}, {"what", e.what}, {"counterparts", {{"product", e.product}, {"solve", e.solve}}}, {"from_q", e.from_q},
-            {"cannot", e.cannot}, {"disagrees", e.disagrees}, {"M_error", number(e.M_error)}, {"product_error", number(e.product_error)}, {"force_error", number(e.force_error)},
+            {"cannot", e.cannot}, {"disagrees", e.disagrees}, {"loses_digits", e.loses_digits}, {"M_error", number(e.M_error)}, {"product_error", number(e.product_error)}, {"force_error", number(e.force_error)},
             {"microseconds", json::object()}};
   for (std::size_t k = 0; k < step_count; ++k)
     if (e.time[k].measured()) j["microseconds"][name(step(k))] = written(e.time[k]);
@@ -22,6 +22,7 @@ PeerEntry peer_entry_read(const json& j) {
   e.product = j.at("counterparts").at("product"), e.solve = j.at("counterparts").at("solve");
   e.from_q = j.at("from_q");
   e.cannot = j.at("cannot"), e.disagrees = j.at("disagrees");
+  e.loses_digits = j.value("loses_digits", false);  // of files older than it
   e.M_error = number_of(j.at("M_error")), e.product_error = number_of(j.at("product_error")), e.force_error = number_of(j.at("force_error"));
   for (std::size_t k = 0; k < step_count; ++k)
     if (const json& times = j.at("microseconds"); times.contains(name(step(k)))) e.time[k] = spread_read(times.at(name(step(k))));

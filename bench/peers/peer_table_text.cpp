@@ -98,7 +98,7 @@ std::string scene_table(const PeerScene& s) {
                     (s.smallest_damping == s.largest_damping ? "" : format(" … %g", s.largest_damping)) +
                     format("; errors up to %.0e of a, %.0e of λ are taken for rounding\n", s.product_limit, s.force_limit) + markdown_table(cells);
   for (const PeerEntry& e : s.entries)
-    if (!e.disagrees.empty()) out += "\n**`" + e.name + "` was not timed**, its answers are not near enough: " + e.disagrees + ".\n";
+    if (!e.disagrees.empty()) out += "\n**`" + e.name + "` was not timed**, " + (e.loses_digits ? "it loses too many digits here: " : "its answers are not near enough: ") + e.disagrees + ".\n";
   return out;
 }
 

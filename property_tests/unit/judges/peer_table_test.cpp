@@ -12,13 +12,13 @@ namespace delassus::bench::peer_table_test {
 namespace {
 
 /// What is wrong with a peer.
-enum class Defect : std::uint8_t { none, mass, product, sign, not_a_number, damping_kept, damping_for_once };
+enum class Defect : std::uint8_t { none, mass, product, sign, not_a_number, damping_kept, damping_for_once, digits };
 
 /// Answers by operators of ours, but for its defect.
 class Pretender : public Peer {
  public:
   Pretender(const Scene& scene, const Damping<double>& damping, const VectorX<double>& x, Defect defect)
-      : defect_(defect), problem_(problem_of(scene)), damping_(damping), other_(other_damping(damping)), x_(x), y_(x), op_(find_operator("dense_cholesky").make<double>()) {
+      : defect_(defect), noise_(std::fmod(1e15 * scene.q.sum(), 1)), problem_(problem_of(scene)), damping_(damping), other_(other_damping(damping)), x_(x), y_(x), op_(find_operator("dense_cholesky").make<double>()) {
     op_->analyze(problem_.structure);
     workspace_ = std::make_unique<Workspace<double>>(op_->workspace());
     EXPECT_TRUE(op_->update(problem_, damping_).ok());
@@ -30,6 +30,7 @@ class Pretender : public Peer {
     if (step == Step::first_product || step == Step::product) must(op_->apply(x_, y_, *workspace_));
     else if (step != Step::kinematics) must(op_->solve(x_, y_, *workspace_));
     if (step == Step::product && defect_ == Defect::product) y_(0, 0) *= 1 + 1e-3;
+    if (step == Step::solve && defect_ == Defect::digits) y_(0, 0) += 1e-3 * (0.5 + noise_) * y_.cwiseAbs().maxCoeff();
     if (step == Step::solve && defect_ == Defect::sign) y_(1, 0) *= -1;
     if (step == Step::solve && defect_ == Defect::not_a_number) y_(2, 0) = NAN;
   }
@@ -45,6 +46,7 @@ class Pretender : public Peer {
   static void must(const Report& report) { EXPECT_TRUE(report.ok()); }
 
   Defect defect_;
+  double noise_;  ///< of the last bits of q
   Problem<double> problem_;
   Damping<double> damping_, other_;
   MatrixX<double> x_, y_;
@@ -84,23 +86,36 @@ TEST(Peers, WhoSolvesAnotherProblemIsNotTimed) {
     const char* what;
     PeerRow row;
     const char* says;
-    int steps;  ///< until it is found out
+    int steps;  ///< until it is found out, and once more at the next q where it might be rounding
   };
-  for (const Case& c : {Case{"a twentieth more damping", row(damped_otherwise), "first_product", 2}, Case{"a heavier body", row(pretend<Defect::mass>), "M:", 1},
-                        Case{"one row of a product", row(pretend<Defect::product>), "product", 3}, Case{"a sign", row(pretend<Defect::sign>), "solve", 5},
-                        Case{"no number", row(pretend<Defect::not_a_number>), "inf", 5}, Case{"the damping kept", row(pretend<Defect::damping_kept>), "new_damping", 6},
-                        Case{"the new damping for one solve", row(pretend<Defect::damping_for_once>), "solve", 7}}) {
+  for (const Case& c : {Case{"a twentieth more damping", row(damped_otherwise), "first_product", 4}, Case{"a heavier body", row(pretend<Defect::mass>), "M:", 1},
+                        Case{"one row of a product", row(pretend<Defect::product>), "product", 6}, Case{"a sign", row(pretend<Defect::sign>), "solve", 10},
+                        Case{"no number", row(pretend<Defect::not_a_number>), "inf", 5}, Case{"the damping kept", row(pretend<Defect::damping_kept>), "new_damping", 12},
+                        Case{"the new damping for one solve", row(pretend<Defect::damping_for_once>), "solve", 14}}) {
     Pretender::taken = 0;
     const PeerScene s = measured(c.row);
     const PeerEntry& e = *s.find("pretender");
     EXPECT_NE(e.disagrees.find(c.says), std::string::npos) << c.what << ": " << e.disagrees;
     EXPECT_EQ(Pretender::taken, c.steps) << c.what;
+    EXPECT_FALSE(e.loses_digits) << c.what;
     for (const Spread& t : e.time) EXPECT_FALSE(t.measured()) << c.what;
     PeerTable t;
     t.scenes.push_back(s);
     EXPECT_EQ(t.disagreements(), 1);
     EXPECT_NE(peer_text(t).find("was not timed**"), std::string::npos);
   }
+}
+
+TEST(Peers, WhoLosesDigitsIsNotTimedAndNoDisagreement) {
+  PeerTable t;
+  t.scenes.push_back(measured(row(pretend<Defect::digits>)));
+  const PeerEntry& e = *t.scenes[0].find("pretender");
+  EXPECT_NE(e.disagrees, "");
+  EXPECT_TRUE(e.loses_digits);
+  for (const Spread& time : e.time) EXPECT_FALSE(time.measured());
+  EXPECT_EQ(t.disagreements(), 0);
+  EXPECT_NE(peer_text(t).find("loses too many digits here"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json(t).get<PeerTable>().scenes[0].find("pretender")->loses_digits);
 }
 
 TEST(Peers, ThoseCompiledInSolveOurProblemAndNoOther) {
