@@ -2,188 +2,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
-#include <queue>
 #include <utility>
+
+#include "algorithms/factors/elimination.h"
 
 namespace delassus {
 namespace {
 
 int narrow(Index i) { return static_cast<int>(i); }
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
-// Of every body: its children not yet eliminated, whether its subtree carries a row, and its rank by depth (deepest first),
-// degrees of freedom and number.
-struct Tree {
-  const Structure& s;
-  int n;
-  std::span<int> children, active, rank, by_rank;
-  int actives = 0;
-  bool coupled = false;  // some constraint has rows on several bodies
-  Lists lists;
-
-  Tree(const Structure& structure, Branches branches) : s(structure), n(narrow(s.bodies())) {
-    std::span<int> depth;
-    lists.divide(Lists::Part{children, size(n)}, Lists::Part{active, size(n)}, Lists::Part{rank, size(n)}, Lists::Part{by_rank, size(n)}, Lists::Part{depth, size(n)});
-    if (branches == Branches::all) std::fill(active.begin(), active.end(), 1);
-    for (const auto& e : s.link_constraints) {
-      coupled = coupled || e.links.size() > 1;
-      for (const auto& link : e.links) active[link.body] = 1;
-    }
-    for (const auto& j : s.joint_constraints) active[j.body] = 1;
-    int deepest = 0;
-    for (int i = 0; i < n; ++i)
-      if (const int p = parent(i); p >= 0) {
-        deepest = std::max(deepest, depth[i] = depth[p] + 1);
-        ++children[p];
-      }
-    for (int i = n; i-- > 0;) {
-      actives += active[i];
-      if (const int p = parent(i); p >= 0) active[p] |= active[i];
-    }
-    sort(depth, deepest);
-  }
-  [[nodiscard]] int parent(int i) const { return narrow(s.parent[i]); }  // −1: ground
-  [[nodiscard]] int dofs(int i) const { return narrow(s.dofs(i)); }
-
- private:
-  // By counting.
-  void sort(std::span<const int> depth, int deepest) {
-    const auto key = [&](int i) { return 7 * (deepest - depth[i]) + dofs(i); };
-    std::vector<int> at(size(7 * deepest + 8), 0);
-    for (int i = 0; i < n; ++i) ++at[key(i) + 1];
-    for (std::size_t k = 1; k < at.size(); ++k) at[k] += at[k - 1];
-    for (int i = 0; i < n; ++i) by_rank[rank[i] = at[key(i)]++] = i;
-  }
-};
-
-// Q_i = N_i ∪ {π(i)} of every body at its elimination, in elimination order; one list after the other. Without lists: {π(i)}.
-struct Cliques {
-  std::vector<int> body, first, members;
-};
-
-// Where nothing couples bodies a joint has degree one, a root none: the ranks, but a root as soon as its children are gone.
-Cliques in_order_of_rank(Tree& tree) {
-  Cliques cliques;
-  cliques.body.reserve(size(tree.n));
-  for (const int phase : {0, 1}) {
-    const auto ready = [&](int i) { return tree.active[i] == phase && tree.children[i] == 0; };
-    for (const int i : tree.by_rank)
-      if (tree.parent(i) < 0 && ready(i)) cliques.body.push_back(i);
-    for (const int i : tree.by_rank) {
-      if (tree.active[i] != phase || tree.parent(i) < 0) continue;
-      cliques.body.push_back(i);
-      if (const int p = tree.parent(i); --tree.children[p] == 0 && tree.parent(p) < 0 && ready(p)) cliques.body.push_back(p);
-    }
-  }
-  return cliques;
-}
-
-// Neighbour sets N_i, sorted, in one piece of memory: one that has no room left moves to the end.
-class Neighbours {
- public:
-  explicit Neighbours(const Tree& tree) : sets_(size(tree.n)) {
-    std::size_t links = 0;
-    for (const auto& e : tree.s.link_constraints) links += e.links.size();
-    entries_.reserve(std::min(2 * least * links, 2 * least * sets_.size()));
-    for (const auto& e : tree.s.link_constraints)
-      for (const auto& a : e.links)
-        for (const auto& b : e.links)
-          if (a.body != b.body) insert(narrow(a.body), narrow(b.body));
-  }
-  [[nodiscard]] std::span<const int> operator[](int i) const { return {entries_.data() + sets_[i].begin, size(sets_[i].count)}; }
-  void insert(int i, int j) {
-    const int at = place(i, j);
-    Set& set = sets_[i];
-    if (at < set.count && entries_[set.begin + at] == j) return;
-    if (set.count == set.room) grow(set);
-    int* const begin = entries_.data() + set.begin;
-    std::copy_backward(begin + at, begin + set.count, begin + set.count + 1);
-    begin[at] = j;
-    ++set.count;
-  }
-  void erase(int i, int j) {
-    const int at = place(i, j);
-    Set& set = sets_[i];
-    int* const begin = entries_.data() + set.begin;
-    std::copy(begin + at + 1, begin + set.count, begin + at);
-    --set.count;
-  }
-
- private:
-  static constexpr std::size_t least = 4;
-  struct Set {
-    int begin = 0, count = 0, room = 0;
-  };
-  [[nodiscard]] int place(int i, int j) const {
-    const auto set = (*this)[i];
-    return narrow(std::lower_bound(set.begin(), set.end(), j) - set.begin());
-  }
-  void grow(Set& set) {
-    const int begin = narrow(static_cast<Index>(entries_.size()));
-    set.room = set.room == 0 ? static_cast<int>(least) : 2 * set.room;
-    entries_.resize(entries_.size() + size(set.room));
-    std::copy_n(entries_.begin() + set.begin, set.count, entries_.begin() + begin);
-    set.begin = begin;
-  }
-  std::vector<Set> sets_;
-  std::vector<int> entries_;
-};
-
-// Alg. 4, lines 12 and 16–20: eliminate, joining all members of Q_i to each other.
-Cliques minimum_degree(Tree& tree) {
-  const int n = tree.n;
-  Neighbours neighbours(tree);
-  using Key = std::uint64_t;  // active, degree, rank: below 2 N²
-  const auto of = [](const auto x) { return static_cast<Key>(x); };
-  const auto has = [&](int i, int j) {
-    const auto set = neighbours[i];
-    return std::binary_search(set.begin(), set.end(), j);
-  };
-  const auto degree = [&](int i) {
-    const int p = tree.parent(i);
-    return of(neighbours[i].size()) + (p >= 0 && !has(i, p) ? 1 : 0);
-  };
-  constexpr Key none = ~Key{0};
-  std::vector<Key> key(size(n), none), entries;
-  entries.reserve(2 * size(n));
-  std::priority_queue<Key, std::vector<Key>, std::greater<>> ready(std::greater<>{}, std::move(entries));
-  const auto enter = [&](int i) {
-    const Key now = (of(tree.active[i]) * of(n) + degree(i)) * of(n) + of(tree.rank[i]);
-    if (std::exchange(key[i], now) != now) ready.push(now);
-  };
-  for (int i = 0; i < n; ++i)
-    if (tree.children[i] == 0) enter(i);
-
-  Cliques cliques;
-  cliques.body.reserve(size(n));
-  cliques.first.reserve(size(n) + 1);
-  cliques.first.push_back(0);
-  cliques.members.reserve(2 * size(n));
-  std::vector<int> q;
-  while (!ready.empty()) {
-    const Key next = ready.top();
-    ready.pop();
-    const int i = tree.by_rank[next % of(n)];
-    if (key[i] != next) continue;  // of an old degree, or gone
-    key[i] = none;
-    const int p = tree.parent(i);
-    const bool parent_is_near = p >= 0 && has(i, p);
-    q.assign(neighbours[i].begin(), neighbours[i].end());
-    for (const int j : q) neighbours.erase(j, i);
-    if (p >= 0 && !parent_is_near) q.push_back(p);
-    for (const int j : q)
-      for (const int k : q)
-        if (j != k) neighbours.insert(j, k);
-    for (const int j : q)
-      if (tree.children[j] == 0) enter(j);
-    if (p >= 0 && --tree.children[p] == 0) enter(p);
-    cliques.body.push_back(i);
-    cliques.members.insert(cliques.members.end(), q.begin(), q.end());
-    cliques.first.push_back(narrow(static_cast<Index>(cliques.members.size())));
-  }
-  return cliques;
-}
 
 // Numbers of the coupling blocks, by unordered pair of steps: open addressing.
 class Blocks {
@@ -223,7 +50,7 @@ class Blocks {
 // Writes a plan of the bodies in a given order.
 class Writer {
  public:
-  Writer(const Structure& s, Matrix matrix, std::span<const int> order, const Cliques* cliques) : s_(s), cliques_(cliques), n_(narrow(s.bodies())) {
+  Writer(const Structure& s, Matrix matrix, std::span<const int> order, const Elimination* elimination) : s_(s), elimination_(elimination), n_(narrow(s.bodies())) {
     plan_.matrix = matrix;
     plan_.steps = n_;
     const std::size_t constraints = s.link_constraints.size(), n = size(n_);
@@ -254,8 +81,8 @@ class Writer {
   }
 
  private:
-  [[nodiscard]] bool coupled() const { return cliques_ != nullptr; }
-  [[nodiscard]] int members_of(int i, int body) const { return coupled() ? cliques_->first[i + 1] - cliques_->first[i] : s_.parent[body] != ground; }
+  [[nodiscard]] bool coupled() const { return elimination_ != nullptr; }
+  [[nodiscard]] int members_of(int i, int body) const { return coupled() ? elimination_->first[i + 1] - elimination_->first[i] : s_.parent[body] != ground; }
 
   void constraints() {
     int next = 0;
@@ -273,7 +100,7 @@ class Writer {
     Plan::Member* const members = members_.data() + first;
     if (!coupled() && q == 1) members[0] = {parent_[i], -1};
     if (coupled()) {
-      for (int k = 0; k < q; ++k) members[k].step = step_[cliques_->members[first + k]];
+      for (int k = 0; k < q; ++k) members[k].step = step_[elimination_->members[first + k]];
       std::sort(members, members + q, [](const Plan::Member& x, const Plan::Member& y) { return x.step < y.step; });
       for (int k = 0; k < q; ++k) members[k].block = blocks_.find(i, members[k].step);
     }
@@ -309,7 +136,7 @@ class Writer {
   }
 
   const Structure& s_;
-  const Cliques* cliques_;  // nullptr: no couplings
+  const Elimination* elimination_;  // nullptr: no couplings
   int n_;
   Plan plan_;
   Blocks blocks_;
@@ -321,10 +148,8 @@ class Writer {
 }  // namespace
 
 Plan make_plan(const Structure& s, Matrix matrix, Branches branches) {
-  Tree tree(s, branches);
-  const bool coupled = matrix == Matrix::M_R && tree.coupled;
-  const Cliques cliques = coupled ? minimum_degree(tree) : in_order_of_rank(tree);
-  return Writer(s, matrix, cliques.body, coupled ? &cliques : nullptr).written(tree.actives);
+  const Elimination e = eliminate(s, matrix, branches);
+  return Writer(s, matrix, e.body, e.coupled ? &e : nullptr).written(e.actives);
 }
 
 Plan mass_plan(const Structure& s, const Plan& of_M_R) {

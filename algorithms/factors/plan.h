@@ -1,8 +1,8 @@
 // The symbolic phase: in which order joints are eliminated, which 6×6 blocks fill in, and the integer plan the numeric
 // sweeps follow. Depends on the structure only.
 //
-// What     Minimum degree among the joints whose children are all gone (a joint must be eliminated before its parent),
-//          ties: deepest first, then by number of degrees of freedom, so that equal steps stand together.
+// What     A joint is eliminated before its parent, otherwise the one of minimum degree; many trees also by nested dissection, where
+//          that is counted to be less work (elimination.h).
 //          Joints whose subtree carries no row come first ("phase A"): their part of the factor does not depend on the
 //          damping, and forces on the rows never visit them.
 // Ground   is never a node: it has no acceleration, so it couples nothing.

@@ -1,19 +1,14 @@
-// Nested dissection of a square lattice of free bodies: the order of elimination that the library does not have, to compare with.
-//
-// What     The middle line of the longer side comes last, the two halves before it, each in the same way, down to four bodies.
-// Cost     of eliminating an s × s lattice so: O(s³) (A. George, Nested dissection of a regular finite element mesh, 1973).
+// What nested dissection (algorithms/factors/dissection.h) saves of the work of an elimination, on the ladders of coupled free bodies.
 #pragma once
 
-#include <vector>
+#include <string>
 
-#include "algorithms/kit/spatial.h"
+#include "bench/scaling/scaling.h"
 
 namespace delassus::bench {
 
-/// Bodies of the lattice in the order of their elimination.
-[[nodiscard]] std::vector<Index> dissection(Index side);
-
-/// Σ_i 6 (|Q_i| + 1)² of eliminating the lattice in an order: Term::front_pairs of that order.
-[[nodiscard]] double lattice_front_pairs(Index side, const std::vector<Index>& order);
+/// Walls, pyramids and lattices by size, up to 10⁴ bodies: Σ n (|Q| + 1)² by minimum degree alone, and in the order taken, both computed here.
+/// Empty for other ladders.
+[[nodiscard]] std::string dissection_table(const ScalingLadder& ladder);
 
 }  // namespace delassus::bench

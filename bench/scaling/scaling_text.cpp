@@ -141,17 +141,6 @@ std::string crossovers_table(const Scaling& s) {
   return markdown_table(rows, 7);
 }
 
-/// The lattice in the order of the library against the one it does not have.
-std::string dissection_table(const ScalingLadder& l) {
-  Table rows{{"s", "minimum degree", "nested dissection", "ratio"}};
-  for (const ScalingSize& size : l.sizes) {
-    if (size.s % 8 != 0 || (size.s & (size.s - 1)) * (size.s % 96) != 0) continue;
-    const double minimum = size.terms[static_cast<std::size_t>(Term::front_pairs)], nested = lattice_front_pairs(size.s, dissection(size.s));
-    rows.push_back({whole(size.s), format("%.4g", minimum), format("%.4g", nested), format("%.2f", nested / minimum)});
-  }
-  return "\nΣ n (|Q| + 1)², which an update of `lcaba` is made of, in the order of the library, and in one that it does not have:\n\n" + markdown_table(rows);
-}
-
 int count_disagreements(const Scaling& s, int& held) {
   int off = 0;
   for (const ScalingLadder& l : s.ladders)
@@ -171,7 +160,7 @@ std::string scaling_text(const Scaling& s) {
   if (s.ladders.empty() || s.ladders.front().sizes.empty()) return text;
   text += "### The ladders\n" + ladders_table(s) + "\n### Crossovers, by counted operations\n" + crossovers_table(s);
   for (const ScalingLadder& l : s.ladders)
-    if (!l.sizes.empty()) text += "\n### " + l.name + ": measured order (declared)\n" + orders_table(l) + (l.name == "lattice" ? dissection_table(l) : "");
+    if (!l.sizes.empty()) text += "\n### " + l.name + ": measured order (declared)\n" + orders_table(l) + dissection_table(l);
   return text;
 }
 

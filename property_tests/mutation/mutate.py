@@ -31,7 +31,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 # Sources, and the operators and parts (mutant_killer.cpp) that hold them.
 FILES = {
-    "plan.cpp": "plans lcaba aba_sweep", "plan.h": "plans lcaba aba_sweep lcaba_refined",
+    **dict.fromkeys(["plan.cpp", "elimination.cpp", "dissection.cpp"], "plans Elimination lcaba aba_sweep"), "plan.h": "plans lcaba aba_sweep lcaba_refined",
     "block_diagonal.cpp": "lcaba aba_sweep proximal", "block_diagonal.h": "kernels lcaba aba_sweep proximal",
     **dict.fromkeys(["factor.cpp", "factor_steps.cpp", "link_rows.cpp"], "kernels lcaba aba_sweep"), "sweep.cpp": "kernels lcaba lcaba_refined", "six.h": "kernels lcaba aba_sweep lcaba_refined",
     "columns.h": "Columns lcaba aba_sweep lcaba_refined",

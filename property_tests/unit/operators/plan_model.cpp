@@ -20,7 +20,8 @@ template <class E> const E& at(std::span<const E> list, std::size_t k) {
 
 class Model {
  public:
-  Model(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of) : plan_(plan), s_(s), matrix_(matrix), order_of_(order_of), left_(s.bodies(), 1), near_(s.bodies()) {
+  Model(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of, const std::vector<int>& stages)
+      : plan_(plan), s_(s), matrix_(matrix), order_of_(order_of), stages_(stages), left_(s.bodies(), 1), near_(s.bodies()) {
     for (Index i = 0; i < s.bodies(); ++i) depth_.push_back(s.parent[i] == ground ? 0 : depth_[s.parent[i]] + 1);
     std::set<Index> holds_rows;
     for (const auto& e : s.link_constraints)
@@ -64,7 +65,7 @@ class Model {
       if (left_[c] && s_.parent[c] == body) return false;
     return true;
   }
-  auto key(Index body) const { return std::tuple(active_.contains(body), clique(body).size(), -depth_[body], s_.dofs(body), body); }
+  auto key(Index body) const { return std::tuple(active_.contains(body), active_.contains(body) && !stages_.empty() ? stages_[static_cast<std::size_t>(body)] : 0, clique(body).size(), -depth_[body], s_.dofs(body), body); }
 
   // One number per pair, none twice.
   void expect_block(Index a, Index b, int number, int step) {
@@ -140,6 +141,7 @@ class Model {
   const Structure& s_;
   Matrix matrix_;
   const Plan* order_of_;
+  const std::vector<int>& stages_;
   std::vector<char> left_;                // not yet eliminated
   std::vector<std::set<Index>> near_;     // N_i
   std::vector<Index> depth_;
@@ -150,9 +152,9 @@ class Model {
 
 }  // namespace
 
-std::string plan_broken(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of) {
+std::string plan_broken(const Plan& plan, const Structure& s, Matrix matrix, Branches branches, const Plan* order_of, const std::vector<int>& stages) {
   try {
-    Model(plan, s, matrix, branches, order_of).check();
+    Model(plan, s, matrix, branches, order_of, stages).check();
   } catch (const std::exception& e) {
     return e.what();
   }
