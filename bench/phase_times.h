@@ -48,6 +48,11 @@ struct ChoiceRow {
   std::vector<RowTimes> times;
   double weight = 1;                            ///< in calibrated(): as so many problems
 };
+/// Rows chosen beyond the promise, and those that were faster.
+[[nodiscard]] std::vector<std::string> doubtful(const ChoiceRow& row);
+/// Of each phase the lower time, where it is in both.
+void keep_lower(std::vector<RowTimes>& of, const std::vector<RowTimes>& again);
+/// All rows in turn; then those that are doubtful by themselves, a few times, both ways: the fastest of two dozen is the luckiest, too.
 [[nodiscard]] ChoiceRow measure_choice(const std::string& scene, const Problem<double>& problem, const Damping<double>& damping,
                                        const std::vector<const OperatorRow*>& rows, double budget);
 /// A table in Markdown per kind of use: scene × reuse, with the crossovers measured and predicted, and the worst ratio below.

@@ -7,7 +7,7 @@
 #include "algorithms/kit/test_scalars.h"
 #include "bench/cell.h"
 #include "bench/page/choosing.h"
-#include "bench/scaling/dissection.h"
+#include "bench/phase_times.h"
 #include "bench/page/drawing.h"
 #include "bench/scaling/growth.h"
 #include "bench/page/page.h"
@@ -200,18 +200,6 @@ TEST(Scaling, AFitHasToArriveAtTheLastSize) {
   EXPECT_FALSE(order_by_fit({4, 8, 12}, {1, 2, 3}, {terms[0], terms[1], terms[2]}).agree()) << "sizes are too few";
 }
 
-TEST(Scaling, AnOrderOfEliminationIsCounted) {
-  EXPECT_EQ(lattice_front_pairs(2, {0, 1, 2, 3}), 6 * (9 + 9 + 4 + 1)) << "a square: two neighbours, two, one, none";
-  EXPECT_EQ(lattice_front_pairs(2, {0, 3, 1, 2}), 6 * (9 + 9 + 4 + 1));
-  EXPECT_EQ(lattice_front_pairs(3, {4, 0, 1, 2, 3, 5, 6, 7, 8}), 6 * (25 + 9 + 25 + 16 + 16 + 16 + 9 + 4 + 1)) << "the middle first couples all its neighbours";
-  for (const Index side : {1, 2, 3, 7, 16}) {
-    std::vector<Index> order = dissection(side);
-    std::sort(order.begin(), order.end());
-    ASSERT_EQ(order.size(), static_cast<std::size_t>(side * side));
-    for (Index k = 0; k < side * side; ++k) EXPECT_EQ(order[static_cast<std::size_t>(k)], k);
-  }
-}
-
 TEST(Scaling, EveryOperatorDeclaresItsOrders) {
   for (const OperatorRow& row : operators()) EXPECT_NO_THROW(static_cast<void>(declared_orders(row.name))) << row.name;
   EXPECT_THROW(static_cast<void>(declared_orders("nosuch")), std::logic_error);
@@ -330,6 +318,29 @@ TEST(Cell, ATimeWithoutAnAnswerIsNone) {
   r.scenes[0].cells.push_back(c);
   EXPECT_EQ(overview_section(r).find("class=\"fast\""), std::string::npos) << "no answer is not the fastest";
   EXPECT_NE(overview_section(r).find("lost_<wbr>pivot"), std::string::npos);
+}
+
+TEST(Choosing, WhatWasLuckyIsTimedAgain) {
+  Structure chain;
+  for (Index i = 0; i < 30; ++i) chain.add_body(i - 1, 1);
+  chain.add_link_constraint(3, {29});
+  ChoiceRow row{"chain", 30, 3, count(chain), {}, 1};
+  const std::string chosen(choose(row.quantities, {.products = 1}).product);
+  const auto timed = [](const std::string& op, double product) {
+    RowTimes r{op, false, false, {}};
+    r.time.fill(NAN);
+    r.time[static_cast<std::size_t>(Phase::update)] = 0, r.time[static_cast<std::size_t>(Phase::product)] = product;
+    return r;
+  };
+  row.times = {timed(chosen, 1.2), timed("lucky", 1), timed("slow", 2)};
+  EXPECT_EQ(doubtful(row), (std::vector<std::string>{chosen, "lucky"}));
+  keep_lower(row.times, {timed(chosen, 1.3), timed("lucky", 0.9), timed("slow", NAN)});
+  EXPECT_EQ(row.times[0].time[static_cast<std::size_t>(Phase::product)], 1.2) << "of both the lower time";
+  EXPECT_EQ(row.times[1].time[static_cast<std::size_t>(Phase::product)], 0.9);
+  EXPECT_EQ(row.times[2].time[static_cast<std::size_t>(Phase::product)], 2) << "what was not answered again stays";
+  EXPECT_FALSE(doubtful(row).empty());
+  keep_lower(row.times, {timed(chosen, 0.95)});
+  EXPECT_EQ(doubtful(row), std::vector<std::string>{});
 }
 
 TEST(Choosing, TheCheapestWithAnAnswerIsNamed) {
