@@ -2,7 +2,6 @@
 // what others do on the machine meanwhile does not count, but for the caches.
 #pragma once
 
-#include <ctime>
 #include <functional>
 
 #include "bench/stopwatch.h"
@@ -16,13 +15,6 @@ struct Spread {
   int rounds = 0;
   [[nodiscard]] bool measured() const { return rounds > 0; }
 };
-
-/// Time this thread has computed [s].
-[[nodiscard]] inline double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Of a list that is not empty, in any order: the middle one, and those a quarter from either end.
 [[nodiscard]] inline Spread spread_of(std::vector<double> times) {

@@ -1,9 +1,10 @@
-// Wall-clock time of one call: steady clock, warm caches, several batches in one run.
+// Time of one call: clock of the thread, warm caches, several batches in one run. What others do on the machine counts for caches alone.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <vector>
 
@@ -21,13 +22,20 @@ struct Timing {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Time this thread has computed [s].
+[[nodiscard]] inline double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /// Calls `f` once to warm up, then in up to 15 batches of equal length within about `budget` seconds. A call that is
 /// longer than the budget, twice so that a machine that was busy once is not taken for it, counts as it is.
 template <class F> [[nodiscard]] Timing stopwatch(F&& f, double budget) {
   const auto timed = [&](std::int64_t calls) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = thread_seconds();
     for (std::int64_t i = 0; i < calls; ++i) f();
-    return seconds_since(start) / static_cast<double>(calls);
+    return (thread_seconds() - start) / static_cast<double>(calls);
   };
   const double cold = timed(1), warm = timed(1), once = std::min(cold, warm);
   if (once > budget) return {5e5 * (cold + warm), 1e6 * once, 2};

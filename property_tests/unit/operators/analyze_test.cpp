@@ -28,7 +28,7 @@ TEST(Analyze, AllocatesAFewTimesWhateverTheSize) {
         op->analyze(structure);
         const std::int64_t now = laws::allocation_count() - before;
         EXPECT_GT(now, 0) << "the counter counts";
-        const int grown = growing * std::bit_width(static_cast<std::size_t>(structure->bodies()));
+        const int grown = growing * static_cast<int>(std::bit_width(static_cast<std::size_t>(structure->bodies())));
         const bool dissected = std::ranges::count(structure->parent, ground) > undivided;  // one more order, and its graph
         EXPECT_LE(now, constant + grown + (dissected ? constant / 2 + grown : 0)) << name << ", " << family.name << " n=" << n;
       }
