@@ -167,7 +167,7 @@ std::vector<int> dissected(const Tree& tree) {
   return stages;
 }
 
-// Alg. 4, lines 12 and 16–20: eliminate, joining all members of Q_i to each other; up to `most` work, and no body beyond it.
+// Alg. 4, lines 12 and 16–20: eliminate, joining all members of Q_i to each other; it ends early where it is more than `most` work.
 Elimination minimum_degree(const Tree& tree, std::span<const int> stages, double most) {
   const int n = tree.n;
   Neighbours neighbours(tree);
@@ -200,7 +200,7 @@ Elimination minimum_degree(const Tree& tree, std::span<const int> stages, double
   out.first.push_back(0);
   out.members.reserve(2 * size(n));
   std::vector<int> q;
-  while (!ready.empty() && out.work < most) {
+  while (!ready.empty() && out.work <= most) {
     const Key next = ready.top();
     ready.pop();
     const int i = tree.by_rank[next % of(n)];
@@ -234,7 +234,7 @@ Elimination coupled_order(const Tree& tree, Ordering ordering) {
   Elimination by_stages = minimum_degree(tree, stages, any);
   if (ordering == Ordering::dissected) return by_stages;
   Elimination plain = minimum_degree(tree, {}, by_stages.work);
-  return plain.work < by_stages.work ? std::move(plain) : std::move(by_stages);
+  return plain.work <= by_stages.work ? std::move(plain) : std::move(by_stages);
 }
 
 }  // namespace

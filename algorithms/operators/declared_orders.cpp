@@ -29,7 +29,7 @@ const std::vector<Row>& table() {
   const Terms sweep{active_dofs, rows, link_rows}, update{dofs, active_dofs, rows, link_rows};
   const Terms coupled_sweep{active_dofs, rows, link_rows, fronts}, coupled_update{dofs, active_dofs, rows, link_rows, fronts, front_pairs};
   const Terms capped_sweep{dofs, rows, link_rows, fronts};
-  const Terms qr_sweep{active_dofs, rows, fronts, reflections, reduced}, qr_update{dofs, rows, panels, reflections, reduced};
+  const Terms qr_sweep{active_dofs, link_rows, fronts, reflections, reduced}, qr_update{dofs, rows, panels, reflections, reduced};
   const Terms matrix{rows, rows_squared}, factor{rows, rows_squared, rows_cubed};
   const Terms columns{dofs, active_dofs, dofs_rows, rows_squared}, columns_first{dofs, active_dofs, dofs_rows, rows, rows_squared, rows_cubed};
   const Terms propagated{dofs, active_dofs, rows_squared, front_pairs, front_rows, front_row_pairs}, contracted{dofs, active_dofs, rows_squared, tree_pairs, front_pairs, coupled_rows, coupled_row_pairs};
