@@ -32,12 +32,18 @@ Worst worst_of(const Results& r, std::size_t op, const std::string& law) {
   return w;
 }
 
-/// Short: every operator has a column.
+/// In four characters, for every operator has a column.
+std::string short_ratio(double ratio) {
+  if (!(ratio > 0)) return format("%.2g", ratio);
+  if (ratio < 0.01) return "&lt;.01";
+  return ratio < 0.995 ? format("%.2f", ratio).substr(1) : format("%.2g", ratio);
+}
+
 std::string law_cell(const Worst& w) {
   if (w.checked == 0) return "<td class=\"soft\" title=\"" + escape(w.skipped) + "\">–</td>";
   return std::string("<td class=\"") + (w.passed ? "good" : "bad") + "\" title=\"" +
          escape(std::to_string(w.checked) + " scenes; worst: " + w.scene) + "\">" +
-         (!w.passed ? "✗ " + escape(ratio_text(w.ratio)) : w.ratio > 0 && w.ratio < 0.01 ? "&lt;.01" : w.ratio > 0 && w.ratio < 0.995 ? format("%.2f", w.ratio).substr(1) : format("%.2g", w.ratio)) + "</td>";
+         (w.passed ? short_ratio(w.ratio) : "✗ " + escape(ratio_text(w.ratio))) + "</td>";
 }
 
 std::string failures(const Results& r) {

@@ -9,7 +9,7 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-std::string short_number(double x) { return std::isnan(x) ? "–" : x == 0 ? "0" : std::isinf(x) ? "∞" : format("%.0e", x); }
+std::string short_number(double x) { return x == 0 ? "0" : std::isinf(x) ? "∞" : rough_digit(x); }
 std::string count(double x) { return std::isnan(x) ? "–" : format("%.0f", x); }
 
 /// Time of a step of one over that of the other; NaN: one has none.
